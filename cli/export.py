@@ -14,7 +14,7 @@ from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
 
 if TYPE_CHECKING:
-    from ..impact.told.discrete_elements import ExportedRow
+    from ..dynamics.told.discrete_elements import ExportedRow
     from ..models.base import ContactLaw
     from ..start.ball_file import ExportedBall
 
@@ -89,7 +89,7 @@ def export_dem(
 def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
     """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
-    from ..impact.told.discrete_elements import HEAD, lammps_lines, substitutes, table
+    from ..dynamics.told.discrete_elements import HEAD, lammps_lines, substitutes, table
     from ..models import law_named
     from ..models.choose import follows_flow
 
@@ -115,7 +115,7 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
 
 def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> dict[str, str]:
     """The lines of the other programs, by file."""
-    from ..impact.told import simulators as s
+    from ..dynamics.told import simulators as s
 
     contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
     speeds = [row.law.speed for row in rows]
@@ -131,7 +131,7 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
 
 def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[ExportedRow]:
     """Parameters for two such balls; none, with a line, where there are none."""
-    from ..impact.told.discrete_elements import substitutes, two_balls
+    from ..dynamics.told.discrete_elements import substitutes, two_balls
 
     if ball.second is not None:
         if ball.second.radius < 0.0:

@@ -19,8 +19,8 @@ from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
 
 if TYPE_CHECKING:
-    from ..impact.files.setup import Setup
-    from ..impact.result import Impact
+    from ..dynamics.files.setup import Setup
+    from ..dynamics.result import Impact
     from ..models.base import ContactLaw
 
 
@@ -65,10 +65,10 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..core.inputs.toml_input import read_toml
 
     read_toml(path)  # what is no TOML is told before the simulation is loaded
-    from ..impact.files.blow import blow_of
-    from ..impact.files.setup import read_setup
-    from ..impact.files.tables import write_csv, write_hdf5
-    from ..impact.told.picture import picture
+    from ..dynamics.files.blow import blow_of
+    from ..dynamics.files.setup import read_setup
+    from ..dynamics.files.tables import write_csv, write_hdf5
+    from ..dynamics.told.picture import picture
 
     console = new_console()
     setup = read_setup(path)
@@ -112,9 +112,9 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
-    from ..impact.told.band import MOST_SWEPT, swept_stds
-    from ..impact.told.checks import swept_above_one, swept_walls
-    from ..impact.told.draw import draw_sweep, swept_in_vain
+    from ..dynamics.told.band import MOST_SWEPT, swept_stds
+    from ..dynamics.told.checks import swept_above_one, swept_walls
+    from ..dynamics.told.draw import draw_sweep, swept_in_vain
 
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()

@@ -45,9 +45,9 @@ def inverse(
         from ..core.inputs.toml_input import read_toml
 
         read_toml(file)  # what is no TOML is told before the simulation is loaded
-    from ..impact.files.inverse_file import read_inverse
-    from ..impact.files.tables import write_csv
-    from ..impact.told.draw import draw_alpha
+    from ..dynamics.files.inverse_file import read_inverse
+    from ..dynamics.files.tables import write_csv
+    from ..dynamics.told.draw import draw_alpha
 
     console = new_console()
     if file is None:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from .processes.children import compile_without_the_folders_settings
 
-_STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
+_STAGES = ("core", "fem", "models", "dynamics", "discrepancy", "studies")
 # limit: names that are tried for a folder of one's own [-]: more are an attack
 _MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"

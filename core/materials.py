@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError
-from .material import Material
 
 FILE = Path(__file__).resolve().parents[1] / "data" / "materials" / "materials.toml"
 
@@ -94,37 +93,6 @@ def _instead_of(name: str, likeness: float) -> str:
     if near:
         return f"{', '.join(near)}; all of them: dentscope materials"
     return "a name that dentscope materials lists"
-
-
-def material(name: str) -> Material:
-    """Return a material of the table at its listed values.
-
-    Parameters
-    ----------
-    name
-        As `dentscope materials` lists it.
-
-    Returns
-    -------
-    Material
-        Modulus, Poisson's ratio, yield strength and density in SI units. Without a listed strength
-        (ceramics, hardened balls) the body is elastic.
-
-    Raises
-    ------
-    InputError
-        The name is unknown; the nearest names are told.
-
-    Examples
-    --------
-    >>> material("aluminium-6061-t6").Sy
-    276000000.0
-    """
-    numbers = {k: v["value"] for k, v in entry_named(name).numbers.items()}
-    strength = {"Sy": numbers["Sy_Pa"]} if "Sy_Pa" in numbers else {}
-    return Material(
-        E=numbers["E_Pa"], nu=numbers["nu"], density=numbers["density_kg_m3"], name=name, **strength
-    )
 
 
 def unlisted(name: str) -> str:

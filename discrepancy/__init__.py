@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from ..impact.mechanisms import MECHANISMS, Mechanism, Parameter
+from ..dynamics.mechanisms import MECHANISMS, Mechanism, Parameter
 from .findings import Verdict
 from .verdict import diagnose
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.stats import norm
 
 from ..core.arrays import Array
-from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-from ..impact.strength import NODES
+from ..dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ..dynamics.strength import NODES
 from .comparison.forward import Point, Simulator
 from .comparison.problem import Problem
 from .inference.fit import Fit

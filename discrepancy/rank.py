@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.arrays import Array
-from ..impact.mechanisms import MECHANISMS, NAMELESS
-from ..impact.mechanisms.base import Mechanism
+from ..dynamics.mechanisms import MECHANISMS, NAMELESS
+from ..dynamics.mechanisms.base import Mechanism
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
 from .inference.fit import Fit, baseline_situations, fit, grid_of

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.processes.threads import in_one_thread
-from ..impact.mechanisms import MECHANISMS, NAMELESS, Mechanism
-from ..impact.mechanisms.own import own_mechanisms, uncovered
+from ..dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism
+from ..dynamics.mechanisms.own import own_mechanisms, uncovered
 from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
 from .choice.decide import Choice, decide

@@ -4,7 +4,7 @@
 import math
 
 from dentscope.core import Material
-from dentscope.impact import Approach, Friction, Striker, rod_modes, scene_of, strike
+from dentscope.dynamics import Approach, Friction, Striker, rod_modes, scene_of, strike
 from dentscope.models import LAWS
 
 steel = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)

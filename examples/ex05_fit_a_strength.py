@@ -4,7 +4,7 @@
 from dataclasses import replace
 
 import dentscope as ds
-from dentscope.impact import Approach, Striker, scene_of, strike
+from dentscope.dynamics import Approach, Striker, scene_of, strike
 from scipy.optimize import brentq
 
 MEASURED, STD = 0.56, 0.02

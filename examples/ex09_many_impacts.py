@@ -4,8 +4,8 @@
 import numpy as np
 from dentscope.core import Material
 from dentscope.core.drag import air
-from dentscope.impact import Approach, Striker, impacts, scene_of
-from dentscope.impact.drag import flown
+from dentscope.dynamics import Approach, Striker, impacts, scene_of
+from dentscope.dynamics.drag import flown
 from dentscope.models import LAWS
 
 hard = Material(E=208e9, nu=0.3, Sy=1.7e9, density=7800.0)

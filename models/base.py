@@ -27,7 +27,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numba import njit
 
-from ..core.arrays import Array
+from ..core.arrays import Array, numbers
 from ..core.errors import InputError
 from ..core.material import Pair
 from .driver import Depths, Pairs, map_branch, map_loading, map_residual, rows_of
@@ -214,7 +214,7 @@ class ContactLaw(ABC):
         Raises
         ------
         InputError
-            The law states none, as published ones: `impact.told.beside.beside_fitted` says by how
+            The law states none, as published ones: `dynamics.told.beside.beside_fitted` says by how
             much such a law misses the fitted one.
         """
         raise InputError(
@@ -240,7 +240,8 @@ class ContactLaw(ABC):
         if isinstance(pair, Pair):
             depth, peak = np.broadcast_arrays(depth, peak)
         par, row, d, shape = rows_of(self.parameters, pair, depth)
-        p = np.ascontiguousarray(np.broadcast_to(np.asarray(peak, float), shape).ravel())
+        p = numbers(peak, key="peak", allowed="depths in m")
+        p = np.ascontiguousarray(np.broadcast_to(p, shape).ravel())
         if not np.all(np.isfinite(p)):
             raise InputError("a peak is not a number", key="peak", allowed="finite depths in m")
         out = np.zeros(d.size)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import float64, njit, types
 
-from ..core.arrays import Array, Integers
+from ..core.arrays import Array, Integers, numbers
 from ..core.errors import InputError
 from ..core.material import Pair
 from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE
@@ -79,7 +79,7 @@ def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> 
     InputError
         A depth is not a number.
     """
-    d = np.asarray(depth, dtype=float)
+    d = numbers(depth, key="depth", allowed="depths in m")
     if not np.all(np.isfinite(d)):
         raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
     if isinstance(pair, Pair):

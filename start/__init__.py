@@ -1,7 +1,7 @@
-"""Stage start: what a newcomer calls: a pair by finite elements or by every law, a diagnosis.
+"""Stage start: what a newcomer calls: a blow, a pair by finite elements or laws, a diagnosis.
 
 Each takes the file that the command of the same name takes, and returns something that shows
-itself in a notebook, plots itself and gives a data frame; so does `dentscope.impact(...)`.
+itself in a notebook, plots itself and gives a data frame.
 Each is loaded when it is first asked for: to refuse a file needs neither solver nor diagnosis.
 """
 
@@ -11,7 +11,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .checked import Material, Pair
+    from .blows import impact, sweep
+    from .checked import Material, Pair, material
     from .comparison import LawComparison, compare_laws
     from .diagnosis import Diagnosis, diagnose
     from .pair import Solved, case
@@ -25,10 +26,14 @@ _FROM = {
     "case": "pair",
     "compare_laws": "comparison",
     "diagnose": "diagnosis",
+    "impact": "blows",
+    "material": "checked",
+    "sweep": "blows",
 }
 
 __all__ = [
     "Diagnosis", "LawComparison", "Material", "Pair", "Solved", "case", "compare_laws", "diagnose",
+    "impact", "material", "sweep",
 ]  # fmt: skip
 
 

@@ -12,9 +12,9 @@ from ..core.inputs.left_aside import left_aside
 from ..core.inputs.toml_input import read_toml
 from ..core.material import Pair
 from ..core.rig import value_of
-from ..impact.files.scenes import curves_in
-from ..impact.files.second import SecondSphere
-from ..impact.files.setup import FOLLOWING, Setup, setup_of
+from ..dynamics.files.scenes import curves_in
+from ..dynamics.files.second import SecondSphere
+from ..dynamics.files.setup import FOLLOWING, Setup, setup_of
 from ..models import LAWS
 from .case_file import read_pair
 

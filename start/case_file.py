@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,9 @@ from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import InputTable, Listed, parse_model, read_toml
 from ..core.material import Material, Pair
 from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_of
+
+if TYPE_CHECKING:
+    from ..fem import Accuracy, ContactProblem
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
@@ -72,7 +75,9 @@ class CaseBody(MaterialTable):
             ) from None
 
 
-class _Load(InputTable):
+class LoadTable(InputTable):
+    """How far the sphere is pressed, how fast, and from where it is drawn back."""
+
     max_delta_over_R: float = Field(ge=1e-12, le=0.5)
     """Largest approach over the sphere's radius; 0.15 is reached where the flat yields."""
     unload_from: tuple[float, ...] = Field(default=(), strict=False)
@@ -104,7 +109,7 @@ class CaseFile(InputTable):
     """What presses."""
     flat: CaseBody
     """What is pressed."""
-    load: _Load
+    load: LoadTable
     """How far, how fast, from where back."""
     friction: FrictionTable = FrictionTable()
     """Between the two bodies; without it they slide freely."""
@@ -186,7 +191,7 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
 def _check_first(first: float, onset: float, last: float, *, source: str) -> None:
     """Refuse what the round-off of coordinates of the order of R would hide."""
     # loaded with the compiler of impacts, which a refused file does without
-    from ..impact.rules import RULES
+    from ..dynamics.rules import RULES
 
     if first >= RULES.law_shallowest:
         return
@@ -201,8 +206,8 @@ def _check_first(first: float, onset: float, last: float, *, source: str) -> Non
     )  # fmt: skip
 
 
-def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
-    """Read CASE.toml into the solver's problem and accuracy, of another level where one is given.
+def read_case(file: Path) -> tuple[ContactProblem, Accuracy]:
+    """Read CASE.toml into the solver's problem and accuracy.
 
     Raises
     ------
@@ -210,21 +215,35 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
         Every mistake, a line each.
     """
     content, pair = read_pair(file)
+    friction = value_of(content.friction.coefficient, 0.0)
+    return case_of(pair, content.load, friction, level=content.accuracy.level, source=str(file))
+
+
+def case_of(
+    pair: Pair, load: LoadTable, friction: float, *, level: str, source: str
+) -> tuple[ContactProblem, Accuracy]:
+    """Return the solver's problem and accuracy of a pair and how it is pressed.
+
+    Raises
+    ------
+    InputError
+        A depth outside what can be solved, or an unknown level.
+    """
     # loaded after the file is read: a mistake in it is told at once
     from .. import fem
 
-    last = content.load.max_delta_over_R
+    last = load.max_delta_over_R
     # recorded from below first yield; a body that yields late or never still gets two decades
     onset = pair.first_yield
     first = min(0.3 * onset, 1e-2 * last)
-    _check_first(first, onset, last, source=str(file))
+    _check_first(first, onset, last, source=source)
     # what the deepest approach leaves is asked of every case
-    unload = tuple(sorted({*content.load.unload_from, last}))
+    unload = tuple(sorted({*load.unload_from, last}))
     for depth in unload:
         if not first < depth <= last:
             raise InputError(
                 f"{depth:g}",
-                source=str(file),
+                source=source,
                 key="load.unload_from",
                 allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
             )
@@ -234,20 +253,20 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
             pair=pair,
             depths=depths,
             unload_from=unload,
-            speeds=content.load.speeds,
-            friction=value_of(content.friction.coefficient, 0.0),
+            speeds=load.speeds,
+            friction=friction,
             snapshots=(last,),
             profiles=tuple(depths[k] for k in range(5, 60, 6)),
         )
     except InputError as error:
         raise InputError(
-            error.message, source=str(file), key=f"load.{error.key}", allowed=error.allowed
+            error.message, source=source, key=f"load.{error.key}", allowed=error.allowed
         ) from None
     levels = {
         "production": fem.Accuracy.production,
         "quick": fem.Accuracy.quick,
         "smoke": fem.Accuracy.smoke,
     }
-    if level and level not in levels:
+    if level not in levels:
         raise InputError(repr(level), key="level", allowed=", ".join(levels))
-    return problem, levels[level or content.accuracy.level]()
+    return problem, levels[level]()

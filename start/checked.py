@@ -3,93 +3,115 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self, cast
 
+from numpy.typing import ArrayLike
 from pydantic import TypeAdapter, ValidationError
 
+from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
+from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import MaterialTable, Quantity, Radius
+from ..core.materials import entry_named
+from ..core.rig import STRAINS, STRENGTHS, MaterialTable, Quantity, Radius
+from .case_file import read_flow_curve
 
-_KEYS = {"E": "E_Pa", "nu": "nu", "Sy": "Sy_Pa", "density": "density_kg_m3"}
-_ORDER = ("E", "nu", "Sy", "rigid", "density")
+FlowLike = Flow | FlowCurve | str | Path | ArrayLike
+"""A flow law, a curve, its file, or strains and stresses: two rows, or an array of two columns."""
+
+_ROWS = "(strains, stresses), or an array of shape (n, 2), from a strain of 0 on"
+
 _RADIUS: TypeAdapter[Quantity] = TypeAdapter(Radius)
 
 
 class _Checked(type):
-    """Makes `core.Material`; what it makes is an instance of both."""
-
-    def __call__(cls, *given: Any, **named: Any) -> Body:
-        stated = {**dict(zip(_ORDER, given, strict=False)), **named}
-        texts = {_KEYS[k]: v for k, v in stated.items() if k in _KEYS and isinstance(v, str)}
-        parse_model(texts, MaterialTable, source="Material")  # "200 GPa" is no number
-        for name in _KEYS.keys() & stated.keys():
-            _one_number(stated[name], source="Material", key=name)
-        body = Body(*given, **named)
-        numbers = {key: float(getattr(body, name)) for name, key in _KEYS.items()}
-        if not body.rigid:
-            finite = {key: x for key, x in numbers.items() if math.isfinite(x)}
-            parse_model(finite, MaterialTable, source="Material")
-        return body
+    """Whatever is an instance of what such a class makes is one of it."""
 
     def __instancecheck__(cls, instance: Any) -> bool:
-        return isinstance(instance, Body)
+        return isinstance(instance, cls.__bases__)
 
 
-class _CheckedPair(type):
-    """Makes `core.Pair`; what it makes is an instance of both."""
-
-    def __call__(cls, sphere: Any, flat: Any, R: Any) -> Bodies:
-        for key, body in (("sphere", sphere), ("flat", flat)):
-            if not isinstance(body, Body):
-                raise InputError(repr(body), source="Pair", key=key, allowed="a Material")
-        _one_number(R, source="Pair", key="R")
-        pair = Bodies(sphere, flat, R)
-        try:
-            _RADIUS.validate_python(float(R))
-        except ValidationError as mistake:
-            allowed = mistake.errors()[0]["msg"].removeprefix("Value error, ")
-            raise InputError(f"{R:g}", source="Pair", key="R", allowed=allowed) from None
-        return pair
-
-    def __instancecheck__(cls, instance: Any) -> bool:
-        return isinstance(instance, Bodies)
-
-
-def _one_number(value: Any, *, source: str, key: str) -> None:
-    """Refuse an array, `None` and whatever else is not one number."""
-    try:
-        float(value)
-    except (TypeError, ValueError):
-        raise InputError(repr(value), source=source, key=key, allowed="one number") from None
-
-
-class CheckedMaterial(metaclass=_Checked):
+class CheckedMaterial(Body, metaclass=_Checked):
     """A material in SI units, of magnitudes that a file would be allowed to state.
 
-    Takes what `core.Material` takes and returns one. That one knows no units: its numbers may be
-    in any consistent set of them.
+    It makes a `core.Material`. That one knows no units: its numbers may be in any consistent set.
+
+    Parameters
+    ----------
+    E
+        Young's modulus [Pa].
+    nu
+        Poisson's ratio [-], 0 <= nu < 0.5.
+    Sy
+        Yield strength [Pa]; left out it is the first stress of `flow`, or the body is elastic.
+    density
+        [kg/m^3]; only dynamics needs it.
+    flow
+        True stress [Pa] over plastic strain [-], from 0 on: `(strains, stresses)`, an array of
+        shape (n, 2), the name of a CSV file with columns plastic_strain and stress_Pa, or a
+        `core.flow.Flow`.
+    rigid
+        Does not deform at all; `E`, `nu` and `Sy` are then ignored.
+    name
+        Text for tables and pictures.
 
     Raises
     ------
     InputErrors
-        A number that no material has, with the unit that was perhaps meant.
+        What is no number, or a number that no material has, with the unit that was perhaps meant.
 
     Examples
     --------
+    >>> Material(200e9, 0.3, flow=([0.0, 0.1], [300e6, 500e6])).Sy
+    300000000.0
     >>> Material(E=200, nu=0.3)
     Traceback (most recent call last):
     dentscope.core.errors.InputErrors: Material: E_Pa: 200.0 (allowed: a number from 1000 to \
 2e+12; 200 GPa would be 2e+11)
     """
 
+    __slots__ = ()
 
-class CheckedPair(metaclass=_CheckedPair):
+    if TYPE_CHECKING:  # a type checker asks for both
+
+        def __init__(
+            self, E: float, nu: float, Sy: float = ..., density: float = ..., *,
+            flow: FlowLike | None = ..., rigid: bool = ..., name: str = ...,
+        ) -> None: ...  # fmt: skip
+
+    def __new__(
+        cls, E: float, nu: float, Sy: float = math.inf, density: float = math.nan, *,
+        flow: FlowLike | None = None, rigid: bool = False, name: str = "",
+    ) -> Self:  # fmt: skip
+        """Return a `core.Material`."""
+        flows = None if flow is None else _flow_of(flow)
+        if flows is not None and flows.curve is not None and Sy == math.inf:
+            Sy = flows.curve.strength
+        stated = {"E_Pa": E, "nu": nu, "Sy_Pa": Sy, "density_kg_m3": density}
+        found = {k: one_number(x, source="Material", key=k) for k, x in stated.items()}
+        # an infinite strength and a density of nan are what a program writes for none
+        given = {} if rigid else {k: x for k, x in found.items() if math.isfinite(x)}
+        parse_model(given, MaterialTable, source="Material")
+        body = Body(
+            found["E_Pa"], found["nu"], found["Sy_Pa"], rigid, found["density_kg_m3"], name, flows
+        )
+        return cast("Self", body)
+
+
+class CheckedPair(Bodies, metaclass=_Checked):
     """A sphere and a flat in SI units, of a radius that a file would be allowed to state.
 
-    Takes what `core.Pair` takes and returns one.
+    It makes a `core.Pair`.
+
+    Parameters
+    ----------
+    sphere, flat
+        The two bodies.
+    R
+        Radius of the undeformed sphere [m].
 
     Raises
     ------
@@ -105,8 +127,72 @@ class CheckedPair(metaclass=_CheckedPair):
 would be 0.01)
     """
 
+    __slots__ = ()
+
+    def __new__(cls, sphere: Body, flat: Body, R: float) -> Self:
+        """Return a `core.Pair`."""
+        for key, body in (("sphere", sphere), ("flat", flat)):
+            if not isinstance(body, Body):
+                raise InputError(repr(body), source="Pair", key=key, allowed="a Material")
+        radius = one_number(R, source="Pair", key="R")
+        pair = Bodies(sphere, flat, radius)
+        try:
+            _RADIUS.validate_python(radius)
+        except ValidationError as mistake:
+            allowed = mistake.errors()[0]["msg"].removeprefix("Value error, ")
+            raise InputError(f"{R:g}", source="Pair", key="R", allowed=allowed) from None
+        return cast("Self", pair)
+
+
+def _flow_of(given: FlowLike) -> Flow:
+    """Return the flow law that is given, or that of its curve."""
+    if isinstance(given, Flow):
+        return given
+    if isinstance(given, FlowCurve):
+        return Flow(given)
+    if isinstance(given, str | Path):
+        return Flow(read_flow_curve(Path(given)))
+    rows = numbers(given, source="Material", key="flow", allowed=_ROWS)
+    rows = rows if isinstance(given, tuple) else rows.T
+    if rows.ndim != 2 or len(rows) != 2:
+        raise InputError(f"shape {rows.shape}", source="Material", key="flow", allowed=_ROWS)
+    strain, stress = rows
+    for values, known in ((strain, STRAINS), (stress, STRENGTHS)):
+        for value in values:
+            if wanted := known.wanted(float(value)):
+                raise InputError(f"{value:g}", source="Material", key="flow", allowed=wanted)
+    return Flow(tabulated(strain, stress))
+
 
 Material = CheckedMaterial
 """The name that `dentscope` gives it."""
 Pair = CheckedPair
 """Likewise."""
+
+
+def material(name: str) -> Material:
+    """Return a material of the table at its listed values.
+
+    Parameters
+    ----------
+    name
+        As `dentscope materials` lists it.
+
+    Returns
+    -------
+    Material
+        Modulus, Poisson's ratio, yield strength and density in SI units. Without a listed strength
+        (ceramics, hardened balls) the body is elastic.
+
+    Raises
+    ------
+    InputError
+        The name is unknown; the nearest names are told.
+
+    Examples
+    --------
+    >>> material("aluminium-6061-t6").Sy
+    276000000.0
+    """
+    of = {key: numbers["value"] for key, numbers in entry_named(name).numbers.items()}
+    return Material(of["E_Pa"], of["nu"], of.get("Sy_Pa", math.inf), of["density_kg_m3"], name=name)

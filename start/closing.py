@@ -28,8 +28,8 @@ from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.inference.fit import fit
 from ..discrepancy.inference.window import sharpened
 from ..discrepancy.rules import RULES as DIAGNOSIS
+from ..dynamics.mechanisms.base import Constants, Mechanism
 from ..fitting.case_table import pair_table
-from ..impact.mechanisms.base import Constants, Mechanism
 from ..models.table import PairTable, table_law
 from ..models.table_file import write_table
 from .metal_press import MetalPress, presses

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..core.arrays import one_number
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..core.output import figure
@@ -175,6 +176,8 @@ def compare_laws(
     ('fitted',)
     """
     last = 0.01
+    if max_delta_over_R is not None:
+        max_delta_over_R = one_number(max_delta_over_R, key="max_delta_over_R")
     if not isinstance(pair, Pair):
         content, pair = read_pair(Path(pair))
         last = content.load.max_delta_over_R

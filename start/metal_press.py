@@ -14,9 +14,9 @@ from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
 from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.rules import RULES as DIAGNOSIS
+from ..dynamics import Scene
+from ..dynamics.mechanisms.base import Constants, Mechanism
 from ..fem.problem import DEEPEST
-from ..impact import Scene
-from ..impact.mechanisms.base import Constants, Mechanism
 from ..models.anchored import AnchoredLaw
 from .rules import RULES
 

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from .. import fem
+from ..core.inputs.toml_input import parse_model
+from ..core.material import Pair
 from ..core.output import figure
+from ..core.rig import FrictionTable, value_of
 from ..core.tables import frame, html_table, text_table
-from .case_file import read_case
+from .case_file import LoadTable, case_of, read_pair
 from .measured import MeasuredContact, measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+
+# limit: approach over R of a pair whose depth is not said [-]: shallow enough for a quick solve
+_DEPTH = 0.01
 
 Report = Callable[[float], None]
 
@@ -117,22 +123,50 @@ class Solved:
         return html_table(head, cells, title=f"{self.solution.outcome} {self.remark}")
 
 
-def case(file: str | Path, *, level: str = "") -> Solved:
-    """Solve the pair of a CASE.toml by finite elements.
+def case(
+    pair: Pair | str | Path,
+    *,
+    level: Literal["smoke", "quick", "production"] | None = None,
+    max_delta_over_R: float | None = None,
+    unload_from: Sequence[float] = (),
+    speed_m_s: float | None = None,
+    friction: float | None = None,
+) -> Solved:
+    """Solve a pair by finite elements.
 
     Parameters
     ----------
-    file
-        As `dentscope case --new` writes it.
+    pair
+        The two bodies, or a CASE.toml as `dentscope case --new` writes it.
     level
-        `smoke`, `quick` or `production`, instead of the file's.
+        How finely; by default the file's, and `quick` for a pair.
+    max_delta_over_R, unload_from, speed_m_s, friction
+        Largest approach over R (0.01 for a pair), approaches over R from which the sphere is drawn
+        back, speed of the approach [m/s], coefficient of friction; in place of the file's.
 
     Raises
     ------
     InputErrors
-        One line for each mistake in the file.
+        One line for each mistake: file, key, value, what is allowed.
     """
-    problem, accuracy = read_case(Path(file), level=level)
+    load: dict[str, Any] = {"max_delta_over_R": _DEPTH}
+    rubs, source = FrictionTable(), "case"
+    if not isinstance(pair, Pair):
+        source = str(pair)
+        content, pair = read_pair(Path(pair))
+        load, rubs = content.load.model_dump(exclude_unset=True), content.friction
+        level = level or content.accuracy.level
+    given = {
+        "max_delta_over_R": max_delta_over_R, "unload_from": tuple(unload_from) or None,
+        "speed_m_s": speed_m_s,
+    }  # fmt: skip
+    load |= {key: value for key, value in given.items() if value is not None}
+    if friction is not None:
+        rubs = parse_model({"coefficient": friction}, FrictionTable, source=source)
+    problem, accuracy = case_of(
+        pair, parse_model(load, LoadTable, source=source), value_of(rubs.coefficient, 0.0),
+        level=level or "quick", source=source,
+    )  # fmt: skip
     return solved(problem, accuracy)
 
 
@@ -142,7 +176,7 @@ def solved(problem: fem.ContactProblem, accuracy: fem.Accuracy, report: Report =
     Parameters
     ----------
     problem, accuracy
-        From `read_case`.
+        From `case_of`.
     report
         Told how far the solve is, from 0 to 1.
     """

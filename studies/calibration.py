@@ -30,7 +30,7 @@ from ..discrepancy.inference.derivatives import FORMS, derivatives
 from ..discrepancy.inference.fit import Fit, fit, grid_of
 from ..discrepancy.rank import sharpened_leading
 from ..discrepancy.unknowns.lawerror import SIZES
-from ..impact.mechanisms import MECHANISMS
+from ..dynamics.mechanisms import MECHANISMS
 from ..recordings import read
 from .proof.ranks import read_ranks
 

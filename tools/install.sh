@@ -62,6 +62,9 @@ rm -rf .typing && mkdir -p .typing/dentscope
 for part in __init__.py __main__.py py.typed */__init__.py; do
   ln -s "../../${part%/__init__.py}" ".typing/dentscope/${part%/__init__.py}"
 done
+# a type checker of a user's own file looks for them among the packages
+ln -s ../../__init__.py .typing/dentscope/__init__.pyi
+ln -sfn "$PWD/.typing/dentscope" "$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/dentscope-stubs"
 
 if ! .venv/bin/python -c 'import gmsh' 2>/dev/null; then
   apt_install "gmsh" "${system_packages[@]}" || exit 2

@@ -98,11 +98,11 @@ def _schema(kind: str) -> type[BaseModel]:
 
         return CaseFile
     if kind == "impact":
-        from ...impact.files.setup import SetupFile
+        from ...dynamics.files.setup import SetupFile
 
         return SetupFile
     if kind == "inverse":
-        from ...impact.files.inverse_file import InverseFile
+        from ...dynamics.files.inverse_file import InverseFile
 
         return InverseFile
     from ...recordings.setup_file import SetFile

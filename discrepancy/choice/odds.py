@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.special import logsumexp
 
-from ...impact.mechanisms.base import Mechanism
+from ...dynamics.mechanisms.base import Mechanism
 from ..rank import Ranking
 from ..rules import RULES
 from ..unknowns.wrong_number import WRONG, is_wrong

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...core.arrays import Array
-from ...impact.mechanisms.base import Mechanism
+from ...dynamics.mechanisms.base import Mechanism
 from ..comparison.forward import Simulator
 from ..inference.fit import Fit, fit_anchored
 from ..inference.grid import Grid

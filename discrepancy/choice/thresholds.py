@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact import Scene
-from ...impact.mechanisms.arithmetic import deepest
-from ...impact.strength import strength_table
+from ...dynamics import Scene
+from ...dynamics.mechanisms.arithmetic import deepest
+from ...dynamics.strength import strength_table
 from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem

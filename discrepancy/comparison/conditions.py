@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Indices
-from ...impact import Press
-from ...impact.mechanisms.around import surroundings_of, weaker_table
-from ...impact.mechanisms.base import Surroundings
+from ...dynamics import Press
+from ...dynamics.mechanisms.around import surroundings_of, weaker_table
+from ...dynamics.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
 from ...recordings.noise import bins
 from ...recordings.rules import RULES as RECORDINGS

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
-from ...impact.files.second import second_of
-from ...impact.mechanisms.asked import SIMULATED
-from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
-from ...impact.walk import layout as c
+from ...dynamics import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
+from ...dynamics.files.second import second_of
+from ...dynamics.mechanisms.asked import SIMULATED
+from ...dynamics.mechanisms.base import Constants, Mechanism, Situation, attached, observed
+from ...dynamics.walk import layout as c
 from ...models.base import DomainWarning
 from ..unknowns.wrong_number import wrong_factors
 from .cells import compared

@@ -14,12 +14,12 @@ from ...core.errors import InputError
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
-from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
-from ...impact.files.bodies import bodies_of
-from ...impact.files.second import second_of
-from ...impact.mechanisms import MECHANISMS
-from ...impact.mechanisms.arithmetic import as_deep, deepest
-from ...impact.mechanisms.base import Constants, Mechanism, Surroundings
+from ...dynamics import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
+from ...dynamics.files.bodies import bodies_of
+from ...dynamics.files.second import second_of
+from ...dynamics.mechanisms import MECHANISMS
+from ...dynamics.mechanisms.arithmetic import as_deep, deepest
+from ...dynamics.mechanisms.base import Constants, Mechanism, Surroundings
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ..baseline.laws import LawChoice, laws_of, without_curves

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
-from ...impact import Scene, Settings, traced
+from ...dynamics import Scene, Settings, traced
 from ...recordings import RecordingSet
 from ..rules import RULES
 from .reduction import Numbers, foot, from_profile, from_trace, roughness

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.inputs.rig_numbers import solid_inertia
-from ...impact import CREEP, Press, Scene
-from ...impact.files.second import second_of
-from ...impact.mechanisms.arithmetic import as_deep, deepest
-from ...impact.strength import strength_table
+from ...dynamics import CREEP, Press, Scene
+from ...dynamics.files.second import second_of
+from ...dynamics.mechanisms.arithmetic import as_deep, deepest
+from ...dynamics.strength import strength_table
 from ..comparison.conditions import Condition
 from ..comparison.problem import Problem
 from ..rules import RULES

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact.mechanisms.base import Constants, Mechanism
+from ...dynamics.mechanisms.base import Constants, Mechanism
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..rules import RULES

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact.mechanisms.base import Mechanism, Situation
+from ...dynamics.mechanisms.base import Mechanism, Situation
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..rules import RULES

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
 from ...core.arrays import Array
-from ...impact.mechanisms.base import Constants, Parameter
+from ...dynamics.mechanisms.base import Constants, Parameter
 from ..rules import RULES
 
 FINE = dict(RULES.grid_places)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact.mechanisms.base import Mechanism
+from ...dynamics.mechanisms.base import Mechanism
 from ..comparison.forward import Point, Simulator
 from ..rules import RULES
 from .grid import Grid, along_all

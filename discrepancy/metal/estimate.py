@@ -20,9 +20,9 @@ from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS, Rise
 from ...core.processes.threads import in_one_thread
-from ...impact import dent_radius
-from ...impact.mechanisms.base import Constants, Mechanism, attached
-from ...impact.mechanisms.strength.strain_rate_hardening import (
+from ...dynamics import dent_radius
+from ...dynamics.mechanisms.base import Constants, Mechanism, attached
+from ...dynamics.mechanisms.strength.strain_rate_hardening import (
     StrainRateHardening,
     rises_misfit,
 )

@@ -17,8 +17,8 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.flow import Flow, tabulated
 from ...core.material import Pair
-from ...impact import Scene
-from ...impact.mechanisms.base import Mechanism, Parameter, Surroundings, Values
+from ...dynamics import Scene
+from ...dynamics.mechanisms.base import Mechanism, Parameter, Surroundings, Values
 from ...models import LAWS
 from ...models.anchored import anchored
 from ...models.base import ContactLaw, remembering

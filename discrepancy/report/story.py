@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.observables import OBSERVABLES
-from ...impact.files.second import second_of
+from ...dynamics.files.second import second_of
 from ..findings import Verdict
 from ..rules import RULES
 from .series import Against, SeriesPoint, againsts, points_of, series_of

@@ -27,11 +27,11 @@ from functools import cached_property
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact import ForceTransform, Scene
-from ...impact.files.second import SecondSphere
-from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-from ...impact.mechanisms.arithmetic import deepest
-from ...impact.strength import NODES, strength_table
+from ...dynamics import ForceTransform, Scene
+from ...dynamics.files.second import SecondSphere
+from ...dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ...dynamics.mechanisms.arithmetic import deepest
+from ...dynamics.strength import NODES, strength_table
 from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE

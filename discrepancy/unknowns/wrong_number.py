@@ -16,7 +16,7 @@ from typing import TypeGuard
 
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
-from ...impact.mechanisms.base import (
+from ...dynamics.mechanisms.base import (
     Constants,
     Mechanism,
     Parameter,
@@ -24,7 +24,7 @@ from ...impact.mechanisms.base import (
     Surroundings,
     Values,
 )
-from ...impact.scene import Scene
+from ...dynamics.scene import Scene
 from ..rules import RULES
 
 WRONG = "wrong-input:"

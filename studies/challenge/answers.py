@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...core.errors import InputErrors
 from ...core.inputs.csv_table import Problems, TextTable, numbers, read_text_table, shown
-from ...impact import mechanisms
+from ...dynamics import mechanisms
 from ..proof.rivals import ANOTHER_PAIR, BASELINE, OUTSIDE
 
 COLUMNS = ("set", "name", "probability")

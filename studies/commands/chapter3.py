@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ...impact.result import Impact
+    from ...dynamics.result import Impact
 
 
 def chapter3(names: list[str], out: Path) -> list[Impact]:
@@ -14,8 +14,8 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
     from ...cli.laws import laws_named
     from ...cli.shared.terminal import console as new_console
     from ...cli.shared.terminal import show_table
-    from ...impact.files.setup import DEFAULT_LAWS
-    from ...impact.files.tables import impact_row, write_csv
+    from ...dynamics.files.setup import DEFAULT_LAWS
+    from ...dynamics.files.tables import impact_row, write_csv
     from ..thesis import chapter3 as thesis
 
     console = new_console()

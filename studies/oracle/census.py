@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.material import Material
-from ...impact import (
+from ...dynamics import (
     Approach,
     ForceTransform,
     Friction,
@@ -32,7 +32,7 @@ from ...impact import (
     scene_of,
     traced,
 )
-from ...impact.support import half_space_radiation
+from ...dynamics.support import half_space_radiation
 from ...models import LAWS
 
 ACCURACY = Settings(tolerance=1e-8)

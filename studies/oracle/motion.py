@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...core.arrays import Array
-from ...impact import force as fo
-from ...impact import surface as su
-from ...impact.integrate import Arrays
-from ...impact.scene import Scene
-from ...impact.walk import layout as c
+from ...dynamics import force as fo
+from ...dynamics import surface as su
+from ...dynamics.integrate import Arrays
+from ...dynamics.scene import Scene
+from ...dynamics.walk import layout as c
 
 LOADING, UNLOADING, FLIGHT = "loading", "unloading", "flight"
 

@@ -9,13 +9,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ...core.arrays import Array
-from ...impact import force as fo
-from ...impact import surface as su
-from ...impact.integrate import Arrays, Settings, arrays_of
-from ...impact.result import Impact, impact_of
-from ...impact.scene import Scene
-from ...impact.surface import Spot
-from ...impact.walk import layout as c
+from ...dynamics import force as fo
+from ...dynamics import surface as su
+from ...dynamics.integrate import Arrays, Settings, arrays_of
+from ...dynamics.result import Impact, impact_of
+from ...dynamics.scene import Scene
+from ...dynamics.surface import Spot
+from ...dynamics.walk import layout as c
 from .motion import (
     FLIGHT,
     LOADING,

@@ -19,7 +19,7 @@ from ...discrepancy.inference.fit import Fit, baseline_situations, fit
 from ...discrepancy.inference.linear import Linear
 from ...discrepancy.rank import Screened, screen
 from ...discrepancy.unknowns.lawerror import NO_ERROR
-from ...impact.mechanisms import MECHANISMS, Mechanism
+from ...dynamics.mechanisms import MECHANISMS, Mechanism
 from ...recordings import RecordingSet
 
 FLOOR = 0.03

@@ -103,7 +103,7 @@ def hardness_4_30(sphere: float, flat: float) -> float:
 def alpha_5_12(
     *, mass: float, inertia: float, length: float, R: float, theta: float, mu: float
 ) -> float:
-    """Ratio alpha with mu on the whole denominator; corrected: `impact.inverse`."""
+    """Ratio alpha with mu on the whole denominator; corrected: `dynamics.inverse`."""
     c, s = math.cos(theta), math.sin(theta)
     above = (1.0 / mass + (length * s + R) ** 2 / (4.0 * inertia)) * mu
     above -= length * c * (0.5 * length * s + R) / (2.0 * inertia)

@@ -14,9 +14,9 @@ from ...core.arrays import Array
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
 from ...core.output import figure, write_figure
-from ...impact.integrate import strike
-from ...impact.result import Impact
-from ...impact.scene import Approach, Scene, Striker, scene_of
+from ...dynamics.integrate import strike
+from ...dynamics.result import Impact
+from ...dynamics.scene import Approach, Scene, Striker, scene_of
 from ...models.base import ContactLaw
 
 REFERENCE = Path(__file__).resolve().parents[2] / "data" / "reference"

@@ -8,11 +8,11 @@ from typing import Any
 
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...impact.files.inverse_file import InverseRow
-from ...impact.integrate import strike
-from ...impact.inverse import MeasuredScar, infer
-from ...impact.result import Impact
-from ...impact.scene import Approach, Friction, Instrument, Striker, scene_of
+from ...dynamics.files.inverse_file import InverseRow
+from ...dynamics.integrate import strike
+from ...dynamics.inverse import MeasuredScar, infer
+from ...dynamics.result import Impact
+from ...dynamics.scene import Approach, Friction, Instrument, Striker, scene_of
 from ...models.base import ContactLaw
 from .chapter3 import REFERENCE
 

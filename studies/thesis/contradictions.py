@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ...core.material import Material, Pair
-from ...impact.inverse import alpha
+from ...dynamics.inverse import alpha
 from ...models import LAWS, critical_depth
 from .misprints import ROD, Erratum
 

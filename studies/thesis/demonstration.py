@@ -21,11 +21,11 @@ from ...core.arrays import Array
 from ...discrepancy.comparison.forward import ACCURACY
 from ...discrepancy.comparison.problem import Problem, problem_of
 from ...discrepancy.inference.fit import label
-from ...impact import Scene, strike_batch
-from ...impact.mechanisms import MECHANISMS, Mechanism
-from ...impact.mechanisms.asked import SIMULATED
-from ...impact.mechanisms.base import Situation, observed
-from ...impact.walk import layout as c
+from ...dynamics import Scene, strike_batch
+from ...dynamics.mechanisms import MECHANISMS, Mechanism
+from ...dynamics.mechanisms.asked import SIMULATED
+from ...dynamics.mechanisms.base import Situation, observed
+from ...dynamics.walk import layout as c
 from ...recordings import RecordingSet, read
 from ...recordings.shipped import set_folder
 from .chapter5 import PROFILOMETER

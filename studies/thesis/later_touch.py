@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...discrepancy.comparison.forward import ACCURACY
-from ...impact import Impact, Scene, strike
+from ...dynamics import Impact, Scene, strike
 
 _RESTITUTION = 0.6  # of the other end; the tip's return hardly hangs on it
 _STEP, _LONGEST = 1e-4, 2.0  # s

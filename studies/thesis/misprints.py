@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.material import Material, Pair
-from ...impact.inverse import alpha
-from ...impact.scene import Striker
+from ...dynamics.inverse import alpha
+from ...dynamics.scene import Striker
 from ...models import LAWS, critical_depth, critical_force, yield_constant
 from ...models.kernel import common_parameters
 from ...models.published import hardness

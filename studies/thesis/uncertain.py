@@ -10,9 +10,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from ...core.arrays import Array
-from ...impact import Friction, Scene, Striker
-from ...impact.mechanisms import Mechanism, Surroundings
-from ...impact.mechanisms.base import Constants, Values, attached
+from ...dynamics import Friction, Scene, Striker
+from ...dynamics.mechanisms import Mechanism, Surroundings
+from ...dynamics.mechanisms.base import Constants, Values, attached
 
 
 class Range(NamedTuple):

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Ending, Material
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     ForceTransform,
     Friction,
@@ -23,7 +23,7 @@ from dentscope.impact import (
     strike_many,
     strike_rows,
 )
-from dentscope.impact.walk import layout as c
+from dentscope.dynamics.walk import layout as c
 from dentscope.models.published.ghaednia import GHAEDNIA
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN

@@ -11,9 +11,9 @@ import pytest
 import tomlkit
 from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError, InputErrors
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import law_named
 from dentscope.start.ball_file import read_ball
 

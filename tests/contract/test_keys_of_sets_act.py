@@ -20,7 +20,7 @@ from dentscope.core import InputError
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.rank import baseline_situations
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
 ROD = """

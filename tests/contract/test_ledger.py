@@ -26,4 +26,4 @@ def test_lines_of_code_are_without_blanks_comments_and_docstrings():
 
 
 def test_every_stage_is_in_it():
-    assert {"fem", "fitting", "models", "campaigns", "impact", "reduce"} < set(LEDGER["parts"]())
+    assert {"fem", "fitting", "models", "campaigns", "dynamics", "reduce"} < set(LEDGER["parts"]())

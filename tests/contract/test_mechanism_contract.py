@@ -18,12 +18,12 @@ import pytest
 from dentscope.core import Material
 from dentscope.core.inputs.second_sphere import StruckSphere
 from dentscope.discrepancy.comparison.forward import ACCURACY
-from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
-from dentscope.impact.files.second import SecondSphere
-from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
-from dentscope.impact.mechanisms.asked import SIMULATED
-from dentscope.impact.mechanisms.base import Constants, Situation, Values, attached, observed
-from dentscope.impact.walk import compiled as c
+from dentscope.dynamics import Approach, Friction, Scene, Striker, scene_of, strike_batch
+from dentscope.dynamics.files.second import SecondSphere
+from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
+from dentscope.dynamics.mechanisms.asked import SIMULATED
+from dentscope.dynamics.mechanisms.base import Constants, Situation, Values, attached, observed
+from dentscope.dynamics.walk import compiled as c
 from dentscope.models import LAWS
 
 Seen = Mapping[str, np.ndarray]

@@ -7,25 +7,26 @@ import numpy as np
 import pytest
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy.comparison.cells import compared
-from dentscope.impact.walk.layout import OBSERVABLES as SIMULATED
+from dentscope.dynamics.walk.layout import OBSERVABLES as SIMULATED
 from dentscope.recordings.columns import TRIAL_COLUMNS
 
 ROOT = Path(__file__).parents[2]
 STAGES = (
-    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
+    "core", "fem", "models", "campaigns", "fitting", "dynamics", "recordings", "reduce",
     "discrepancy", "cli",
 )  # fmt: skip
 HOME = "core/observables.py"
 CHOICES = {
-    ("impact/walk/layout.py", "OBSERVABLES"): "order of the integrator's row",
-    ("impact/tabulated/energy_route.py", "NAMES"): "order of a computed row",
+    ("dynamics/walk/layout.py", "OBSERVABLES"): "order of the integrator's row",
+    ("dynamics/tabulated/energy_route.py", "NAMES"): "order of a computed row",
     ("reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
-    ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
+    ("dynamics/columns.py", "_SHOWN"): "which columns a screen shows",
+    ("dynamics/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
-    ("impact/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
-    ("impact/told/band.py", "SWEPT"): "which numbers of a sweep have a band",
-    ("impact/told/draw.py", "SWEPT"): "which observables a figure shows",
+    ("dynamics/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
+    ("dynamics/told/band.py", "SWEPT"): "which numbers of a sweep have a band",
+    ("dynamics/told/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""
 

@@ -14,8 +14,8 @@ STAGES = sorted(path.parent.name for path in ROOT.glob("*/rules.py"))
 STANDING_APART = (
     "models/published",  # coefficients that a paper printed
     "campaigns/cases",  # what the published sets are made of
-    "core/drag.py", "impact/bits.py",  # printed curves, and polynomials of a library
-    "impact/walk/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
+    "core/drag.py", "dynamics/bits.py",  # printed curves, and polynomials of a library
+    "dynamics/walk/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
 )  # fmt: skip
 # constants of nature and of definitions, formats, exit codes, places and sizes of arrays
 EXACT = {
@@ -26,10 +26,10 @@ EXACT = {
     "core/output.py": "_DIGEST",
     "core/rig.py": "TABOR",
     "discrepancy/choice/own_sets.py": "_LEAST_LOG_P",
-    "impact/mechanisms/arithmetic.py": "_STEEL_DENSITY",
-    "impact/mechanisms/contact_damping.py": "_REFERENCE_DEPTH",
-    "impact/mechanisms/rod_vibration.py": "_SIDEWAYS",
-    "impact/mechanisms/strength/strain_rate_hardening.py": "REFERENCE_RATE",
+    "dynamics/mechanisms/arithmetic.py": "_STEEL_DENSITY",
+    "dynamics/mechanisms/contact_damping.py": "_REFERENCE_DEPTH",
+    "dynamics/mechanisms/rod_vibration.py": "_SIDEWAYS",
+    "dynamics/mechanisms/strength/strain_rate_hardening.py": "REFERENCE_RATE",
     "discrepancy/metal/estimate.py": "_FROZEN",
     "discrepancy/unknowns/followed.py": "_SURE_OF",
     "fem/assemble.py": "DISTORTED",
@@ -39,18 +39,18 @@ EXACT = {
     "fem/material/slide.py": "RADIAL EXACT _NOUGHT",
     "fem/problem.py": "NUMERICS_VERSION",
     "fitting/form.py": "_START",
-    "impact/force.py": "N_FORCE N_BRANCH N_FACTORS LOG_DEPTH_LAST",
-    "impact/scene.py": "STANDARD_GRAVITY",
-    "impact/surface.py": "N_HEAD N_IMPRINT",
-    "impact/tabulated/cells.py": "GUIDE _ORDER _START _BINS_PER_CELL",
-    "impact/tabulated/energy_route.py": "_SERIES",
-    "impact/tabulated/energy_table.py": "TERMS",
-    "impact/tabulated/law_table.py": "_COLUMNS _BIN",
-    "impact/told/collisions.py": "TSUJI_DAMPING",
-    "impact/told/effect.py": "ATOM",
-    "impact/walk/compiled.py": "_LANES",
-    "impact/walk/flight.py": "N_FAST _QUARTER",
-    "impact/walk/land.py": "NONE AGAIN",
+    "dynamics/force.py": "N_FORCE N_BRANCH N_FACTORS LOG_DEPTH_LAST",
+    "dynamics/scene.py": "STANDARD_GRAVITY",
+    "dynamics/surface.py": "N_HEAD N_IMPRINT",
+    "dynamics/tabulated/cells.py": "GUIDE _ORDER _START _BINS_PER_CELL",
+    "dynamics/tabulated/energy_route.py": "_SERIES",
+    "dynamics/tabulated/energy_table.py": "TERMS",
+    "dynamics/tabulated/law_table.py": "_COLUMNS _BIN",
+    "dynamics/told/collisions.py": "TSUJI_DAMPING",
+    "dynamics/told/effect.py": "ATOM",
+    "dynamics/walk/compiled.py": "_LANES",
+    "dynamics/walk/flight.py": "N_FAST _QUARTER",
+    "dynamics/walk/land.py": "NONE AGAIN",
     "models/closed_form.py": "PI",
     "models/hardening.py": "_COORDINATES",
     "models/table_kernels.py": "_COLUMNS",
@@ -80,7 +80,7 @@ def register(stage):
 
 
 def test_the_stages_that_choose_numbers_have_a_register() -> None:
-    chosen = {"core", "fem", "fitting", "models", "campaigns", "impact", "recordings"}
+    chosen = {"core", "fem", "fitting", "models", "campaigns", "dynamics", "recordings"}
     assert chosen | {"discrepancy", "reduce", "start"} == set(STAGES)
 
 

@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import Approach, Scene, Striker, scene_of, strike_batch
-from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Surroundings
-from dentscope.impact.mechanisms.strength.flow_stress import FlowMechanism
-from dentscope.impact.strength import strength_table
-from dentscope.impact.walk.layout import OBSERVABLES
+from dentscope.dynamics import Approach, Scene, Striker, scene_of, strike_batch
+from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Surroundings
+from dentscope.dynamics.mechanisms.strength.flow_stress import FlowMechanism
+from dentscope.dynamics.strength import strength_table
+from dentscope.dynamics.walk.layout import OBSERVABLES
 from dentscope.models import LAWS
 
 R = 5e-3

@@ -5,8 +5,8 @@ from functools import lru_cache
 
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact.mechanisms.base import Surroundings
-from dentscope.impact.scene import Friction, Striker
+from dentscope.dynamics.mechanisms.base import Surroundings
+from dentscope.dynamics.scene import Friction, Striker
 
 
 @pytest.mark.parametrize(

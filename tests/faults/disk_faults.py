@@ -439,7 +439,7 @@ def publish_fit_writer(folder):
 
 def report_writer():
     """The files of a sweep: table, data frame and picture, each whole or not there."""
-    from dentscope.impact.columns import Impacts
+    from dentscope.dynamics.columns import Impacts
     from matplotlib.figure import Figure
 
     found = Impacts({"impact_speed_m_s": np.linspace(1.0, 2.0, 500), "restitution": np.ones(500)})

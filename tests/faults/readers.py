@@ -197,7 +197,7 @@ def _read_flow_curve(path):
 
 
 def _read_setup(path):
-    from dentscope.impact.files.setup import read_setup
+    from dentscope.dynamics.files.setup import read_setup
     from dentscope.models import law_named
 
     setup = read_setup(path)
@@ -207,7 +207,7 @@ def _read_setup(path):
 
 
 def _read_inverse(path):
-    from dentscope.impact.files.inverse_file import read_inverse
+    from dentscope.dynamics.files.inverse_file import read_inverse
 
     _rod, rows = read_inverse(path)
     for row in rows:

@@ -11,10 +11,10 @@ import os
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Friction, Scene, Striker, strike
-from dentscope.impact.files.second import SecondSphere
-from dentscope.impact.mechanisms import MECHANISMS, Surroundings
-from dentscope.impact.mechanisms.asked import Asked
+from dentscope.dynamics import Approach, Friction, Scene, Striker, strike
+from dentscope.dynamics.files.second import SecondSphere
+from dentscope.dynamics.mechanisms import MECHANISMS, Surroundings
+from dentscope.dynamics.mechanisms.asked import Asked
 from dentscope.models import LAWS
 
 DRAWS = int(os.environ.get("DRAWS", "40"))

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from dentscope.core import Material
 from dentscope.core.rig import value_of
-from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
-from dentscope.impact.files.bodies import bodies_of
+from dentscope.dynamics import Approach, Friction, Scene, Striker, scene_of, strike
+from dentscope.dynamics.files.bodies import bodies_of
 from dentscope.models.published.hertz import HERTZ
 from dentscope.recordings import read
 

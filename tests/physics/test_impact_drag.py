@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.core.drag import Fluid, air, rod_drag_across
-from dentscope.impact import Striker
-from dentscope.impact.drag import flown
+from dentscope.dynamics import Striker
+from dentscope.dynamics.drag import flown
 from scipy.optimize import brentq
 
 WATER = Fluid(1000.0, 1e-3)

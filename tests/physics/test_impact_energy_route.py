@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Friction, Settings, Striker, Support, scene_of, strike
-from dentscope.impact.tabulated.energy_route import NAMES, energy_impacts, why_not
+from dentscope.dynamics import Approach, Friction, Settings, Striker, Support, scene_of, strike
+from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts, why_not
 from dentscope.models import LAWS
 from scipy.special import gamma
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import Approach, Friction, Settings, Striker, scene_of, strike
-from dentscope.impact.inverse import alpha, mobility
+from dentscope.dynamics import Approach, Friction, Settings, Striker, scene_of, strike
+from dentscope.dynamics.inverse import alpha, mobility
 from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
 from dentscope.models.kernel import E, R, S, branch_kernel, loading_kernel, residual_kernel
 from dentscope.models.published.hertz import HERTZ

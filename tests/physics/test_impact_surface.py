@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     Friction,
     Imprint,
@@ -21,7 +21,7 @@ from dentscope.impact import (
     strike,
     traced,
 )
-from dentscope.impact import surface as su
+from dentscope.dynamics import surface as su
 from dentscope.models import LAWS
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 from dentscope.studies.oracle.census import census

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.impact import strike, tabulated
-from dentscope.impact.files.setup import DEFAULT_LAWS, setup_of
-from dentscope.impact.tabulated.cells import MOST_CELLS, cells_of
-from dentscope.impact.tabulated.energy_route import NAMES, energy_impacts
-from dentscope.impact.tabulated.energy_table import energy_table
+from dentscope.dynamics import strike, tabulated
+from dentscope.dynamics.files.setup import DEFAULT_LAWS, setup_of
+from dentscope.dynamics.tabulated.cells import MOST_CELLS, cells_of
+from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts
+from dentscope.dynamics.tabulated.energy_table import energy_table
 from dentscope.models import LAWS
 
 _STEEL = {"E_Pa": 2.0e11, "nu": 0.3, "density_kg_m3": 7800.0}

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     ForceTransform,
     Friction,
@@ -18,7 +18,7 @@ from dentscope.impact import (
     scene_of,
     strike,
 )
-from dentscope.impact.inverse import mobility
+from dentscope.dynamics.inverse import mobility
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 

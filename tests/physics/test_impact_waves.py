@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     Modes,
     Settings,
@@ -17,8 +17,8 @@ from dentscope.impact import (
     strike,
     traced,
 )
-from dentscope.impact.beam import axial_frequencies, bending_modes, shear_coefficient
-from dentscope.impact.support import half_space_radiation, plate_support, radiated_shares
+from dentscope.dynamics.beam import axial_frequencies, bending_modes, shear_coefficient
+from dentscope.dynamics.support import half_space_radiation, plate_support, radiated_shares
 from dentscope.models import LAWS
 from dentscope.models.published.hertz import HERTZ
 from scipy.integrate import solve_ivp

@@ -11,10 +11,10 @@ from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.rank import baseline_situations
 from dentscope.discrepancy.unknowns.lawerror import law_error
-from dentscope.impact import strike
-from dentscope.impact.files.second import SecondSphere
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics import strike
+from dentscope.dynamics.files.second import SecondSphere
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import LAWS
 from dentscope.recordings import audit, read
 

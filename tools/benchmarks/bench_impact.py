@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 from dentscope.core import Material
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     Friction,
     Impact,
@@ -32,8 +32,8 @@ from dentscope.impact import (
     strike_rows,
     tabulated,
 )
-from dentscope.impact.tabulated.energy_route import energy_impacts
-from dentscope.impact.walk import layout as c
+from dentscope.dynamics.tabulated.energy_route import energy_impacts
+from dentscope.dynamics.walk import layout as c
 from dentscope.models import LAWS
 from dentscope.studies.oracle import oracle_impact
 

@@ -16,7 +16,7 @@ from time import process_time
 import numpy as np
 from bench_impact import FAST, best
 from dentscope.core import Material, Pair
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     Striker,
     arrays_of,
@@ -25,8 +25,8 @@ from dentscope.impact import (
     strike_rows,
     tabulated,
 )
-from dentscope.impact.told.discrete_elements import lammps_lines, substitutes
-from dentscope.impact.walk import layout as c
+from dentscope.dynamics.told.discrete_elements import lammps_lines, substitutes
+from dentscope.dynamics.walk import layout as c
 from dentscope.models import LAWS
 from dentscope.studies.lammps import balls_on_floor, elastic_plastic
 

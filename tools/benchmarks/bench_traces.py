@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from dentscope.core import Material
 from dentscope.discrepancy import Verdict, diagnose
-from dentscope.impact import Approach, ForceTransform, Striker, scene_of, traced
+from dentscope.dynamics import Approach, ForceTransform, Striker, scene_of, traced
 from dentscope.models import LAWS
 from dentscope.recordings import read
 

@@ -17,9 +17,9 @@ import math
 import numpy as np
 import scipy.sparse as sp
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Scene, Striker, strike
-from dentscope.impact.mechanisms import MECHANISMS
-from dentscope.impact.mechanisms.base import Surroundings
+from dentscope.dynamics import Approach, Scene, Striker, strike
+from dentscope.dynamics.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.models import LAWS
 from dentscope.models.base import ContactLaw
 

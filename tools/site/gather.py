@@ -14,15 +14,16 @@ import shutil
 from pathlib import Path
 
 from dentscope.cli.shared.keys import FILES, keys_of
-from dentscope.core.materials import material, materials
+from dentscope.core.materials import materials
 from dentscope.models import LAWS, UNAVAILABLE
 from dentscope.models.export.sources import NAME, javascript_source
+from dentscope.start import material
 
 HERE = Path(__file__).resolve().parent
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "build" / "docs-source"
 STAGES = (
-    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
+    "core", "fem", "models", "campaigns", "fitting", "dynamics", "recordings", "reduce",
     "discrepancy", "start",
 )  # fmt: skip
 _LINKS = (

@@ -8,9 +8,9 @@ import numpy as np
 
 from ....campaigns import CaseRecord
 from ....core.material import Pair
-from ....impact.integrate import strike
-from ....impact.result import Impact
-from ....impact.scene import Approach, Striker, scene_of
+from ....dynamics.integrate import strike
+from ....dynamics.result import Impact
+from ....dynamics.scene import Approach, Striker, scene_of
 from ....models import LAWS, critical_depth, critical_force, law_named
 from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, percent, sheet

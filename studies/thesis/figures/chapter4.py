@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from ....core.inputs.toml_input import read_toml
-from ....impact.integrate import Trace, strike, traced
-from ....impact.inverse import mobility
-from ....impact.result import Impact
+from ....dynamics.integrate import Trace, strike, traced
+from ....dynamics.inverse import mobility
+from ....dynamics.result import Impact
 from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, sheet
 from .. import chapter5

@@ -8,8 +8,8 @@ import numpy as np
 
 from ....campaigns import CaseRecord
 from ....core.inputs.toml_input import read_toml
-from ....impact.integrate import Trace, traced
-from ....impact.inverse import alpha_curve
+from ....dynamics.integrate import Trace, traced
+from ....dynamics.inverse import alpha_curve
 from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, sheet
 from .. import chapter5

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Array
-from ....impact.result import Impact
+from ....dynamics.result import Impact
 from .claims import judged, ranked
 
 Ends = Mapping[str, Impact]

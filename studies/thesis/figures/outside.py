@@ -19,8 +19,8 @@ from ....campaigns import CaseRecord
 from ....core.arrays import Array
 from ....core.inputs.toml_input import read_toml
 from ....core.material import Material
-from ....impact.integrate import strike
-from ....impact.scene import Approach, Striker, scene_of
+from ....dynamics.integrate import strike
+from ....dynamics.scene import Approach, Striker, scene_of
 from ....models.base import ContactLaw
 from ...lammps import balls_on_floor, elastic_plastic
 from ...plot import Picture, finish, laws, look, sheet

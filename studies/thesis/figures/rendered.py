@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Array
-from ....impact.integrate import strike
+from ....dynamics.integrate import strike
 from ....models import LAWS
 from ....reduce.images.clip import Clip
 from ....reduce.measured import Measured

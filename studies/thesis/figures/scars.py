@@ -15,7 +15,7 @@ import numpy as np
 
 from ....core.arrays import Array
 from ....core.inputs.toml_input import read_toml
-from ....impact.integrate import Trace
+from ....dynamics.integrate import Trace
 from ....models.base import ContactLaw
 from ...plot import Picture, finish, look, sheet
 from ..chapter3 import REFERENCE

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
 from ....core.arrays import Array
-from ....impact.inverse import mobility
-from ....impact.scene import Striker
+from ....dynamics.inverse import mobility
+from ....dynamics.scene import Striker
 from ...plot import Picture, sheet
 from .. import chapter3, chapter5
 

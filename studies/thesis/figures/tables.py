@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ....core.inputs.toml_input import read_toml
-from ....impact.inverse import Inferred
-from ....impact.result import Impact
+from ....dynamics.inverse import Inferred
+from ....dynamics.result import Impact
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015

@@ -6,7 +6,7 @@ import math
 
 from ....core.inputs.toml_input import read_toml
 from ....core.material import Material
-from ....impact.scene import Approach, Friction, Scene, scene_of
+from ....dynamics.scene import Approach, Friction, Scene, scene_of
 from ....models.base import ContactLaw
 from .. import chapter5
 from ..chapter3 import REFERENCE

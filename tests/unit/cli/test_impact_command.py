@@ -9,7 +9,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.core.errors import EXIT_NOT_CONVERGED
 from dentscope.core.inputs.templates import KINDS, template
-from dentscope.impact.files.setup import read_setup
+from dentscope.dynamics.files.setup import read_setup
 from dentscope.models.published.hertz import HERTZ
 
 

@@ -9,8 +9,8 @@ import pytest
 from dentscope.core import InputError
 from dentscope.core.inputs import added
 from dentscope.core.inputs.toml_input import InputTable
-from dentscope.impact.mechanisms import MECHANISMS
-from dentscope.impact.mechanisms.own import own_mechanisms, uncovered
+from dentscope.dynamics.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms.own import own_mechanisms, uncovered
 from dentscope.models import LAWS, law_named
 from dentscope.reduce import kinds
 
@@ -118,5 +118,5 @@ def test_a_file_that_a_reader_of_another_package_cannot_read_is_one_line(
 
 
 def test_a_law_of_ones_own_strikes():
-    found = ds.impact("ball", laws=[LAWS["hertz"]], impact_speed_m_s=1.0)
+    found = ds.impact("ball", law=LAWS["hertz"], speed=1.0)
     assert found["hertz"].restitution == pytest.approx(1.0, abs=1e-6)

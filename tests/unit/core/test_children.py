@@ -147,7 +147,7 @@ def test_pythons_are_started_in_one_place() -> None:
     users = {
         str(path.relative_to(ROOT))
         for stage in ("core", "cli", "reduce", "recordings", "campaigns", "studies", "start", "fem",
-                      "models", "impact", "fitting", "discrepancy")
+                      "models", "dynamics", "fitting", "discrepancy")
         for path in (ROOT / stage).rglob("*.py")
         if pattern.search(path.read_text(encoding="utf-8"))
     }  # fmt: skip

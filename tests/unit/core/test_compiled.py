@@ -33,7 +33,7 @@ def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
 
 def test_whatever_is_compiled_is_among_the_sources():
     root = Path(compiled.__file__).parents[1]
-    stages = ("core", "fem", "models", "impact", "fitting", "campaigns", "discrepancy", "reduce",
+    stages = ("core", "fem", "models", "dynamics", "fitting", "campaigns", "discrepancy", "reduce",
               "recordings", "studies", "start", "cli")  # fmt: skip
     files = {path for stage in stages for path in (root / stage).rglob("*.py")}
     kernels = {path for path in files if decorators(path) & KERNELS}
@@ -59,7 +59,7 @@ def decorators(path: Path) -> set[str]:
 def test_an_edited_law_reaches_the_law_that_takes_it_in(tmp_path):
     root = Path(compiled.__file__).parents[1]
     copy = tmp_path / "dentscope"
-    for stage in (".", "core", "fem", "models", "impact"):
+    for stage in (".", "core", "fem", "models", "dynamics"):
         for path in (root / stage).glob("*.py" if stage == "." else "**/*.py"):
             target = copy / path.relative_to(root)
             target.parent.mkdir(parents=True, exist_ok=True)

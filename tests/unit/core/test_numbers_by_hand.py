@@ -49,7 +49,7 @@ def test_a_strength_from_a_hardness_is_known_to_a_tenth_and_what_the_hardness_is
 
 def test_two_specimens_of_a_metal_differ_by_a_tenth() -> None:
     """Each by 7 %: the difference of two by 7 % times the root of 2."""
-    from dentscope.impact.mechanisms.strength.strain_rate_hardening import rises_misfit
+    from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import rises_misfit
 
     found = rises_misfit(
         [(1000.0, 1.0)], np.array(math.expm1(0.07 * math.sqrt(2.0))), np.array(0.0)

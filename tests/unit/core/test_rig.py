@@ -7,8 +7,8 @@ from dentscope.core import InputError, Material
 from dentscope.core.errors import InputErrors
 from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
-from dentscope.impact.files.bodies import bodies_of
-from dentscope.impact.files.setup import SetupFile
+from dentscope.dynamics.files.bodies import bodies_of
+from dentscope.dynamics.files.setup import SetupFile
 from dentscope.recordings import SetFile
 from dentscope.start.case_file import CaseFile
 

@@ -4,7 +4,7 @@ import pytest
 from dentscope.core import InputError, InputErrors
 from dentscope.core.inputs.toml_input import read_model, read_toml
 from dentscope.core.rig import Mass
-from dentscope.impact.files.sweep import SweepTable
+from dentscope.dynamics.files.sweep import SweepTable
 from pydantic import TypeAdapter, ValidationError
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Striker, scene_of, strike
+from dentscope.dynamics import Approach, Striker, scene_of, strike
 from dentscope.models import LAWS
 from dentscope.models.export.sources import NAME, javascript_source
 

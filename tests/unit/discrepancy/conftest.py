@@ -21,7 +21,7 @@ from dentscope.discrepancy.inference.fit import Fit
 from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture
 from dentscope.discrepancy.rank import Ranking, Screened
-from dentscope.impact.mechanisms.base import Parameter, Surroundings
+from dentscope.dynamics.mechanisms.base import Parameter, Surroundings
 
 NONE = np.zeros((0, 0))
 

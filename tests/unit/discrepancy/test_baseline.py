@@ -12,8 +12,8 @@ from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.report.series import points_of
+from dentscope.dynamics import Approach, Scene, Striker, strike
 from dentscope.fitting.hardening import hardening_records
-from dentscope.impact import Approach, Scene, Striker, strike
 from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.uncertainty import METAL, WITH_CURVE
 from dentscope.recordings import read

@@ -11,7 +11,7 @@ import pytest
 from dentscope.discrepancy.correction import correct, widened
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.unknowns.lawerror import FREE, LawError, Spread
-from dentscope.impact.strength import NODES
+from dentscope.dynamics.strength import NODES
 from scipy.stats import norm
 
 KNOWN = 0.02

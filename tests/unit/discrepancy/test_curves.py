@@ -64,7 +64,7 @@ def test_profile_of_a_cap() -> None:
 def traced(tmp_path: Path) -> Path:
     """One ball, traces of the baseline's own impacts at a tenth of the contact per sample."""
     from dentscope.core import Material
-    from dentscope.impact import Approach, Striker, scene_of, traced
+    from dentscope.dynamics import Approach, Striker, scene_of, traced
     from dentscope.models import LAWS
 
     ball, flat = Material(E=208e9, nu=0.3, Sy=2e9), Material(E=206e9, nu=0.29, Sy=3e8)

@@ -13,9 +13,9 @@ from dentscope.discrepancy.unknowns.lawerror import (
     law_error,
     not_given_back,
 )
-from dentscope.impact import Approach, ForceTransform, Scene, Striker, strike
-from dentscope.impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-from dentscope.impact.strength import NODES
+from dentscope.dynamics import Approach, ForceTransform, Scene, Striker, strike
+from dentscope.dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from dentscope.dynamics.strength import NODES
 from dentscope.models import LAWS
 from dentscope.models.uncertainty import METAL
 

@@ -10,7 +10,7 @@ from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.rules import RULES
-from dentscope.impact.mechanisms.base import Parameter
+from dentscope.dynamics.mechanisms.base import Parameter
 
 # Standard errors that one alternative has to win to be named, and three nats for its parameter.
 PRIOR = math.log(PRIORS["baseline"] / PRIORS["mechanisms"])

@@ -10,10 +10,10 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, ludwik, tabulated
 from dentscope.core.inputs.flow_curve import Rise
-from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
-from dentscope.impact.force import F_FORCE
-from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
-from dentscope.impact.strength import strength_table
+from dentscope.dynamics import Approach, Friction, Scene, Striker, scene_of, strike
+from dentscope.dynamics.force import F_FORCE
+from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
+from dentscope.dynamics.strength import strength_table
 from dentscope.models import LAWS
 from dentscope.models.anchored import anchored
 

@@ -13,7 +13,7 @@ from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.metal import lines, metal_of, write_metal
 from dentscope.discrepancy.metal.estimate import _Fit, _of_marks
 from dentscope.discrepancy.metal.flow import STRAINS, FlowCurveOfMarks, curve_values, weights
-from dentscope.impact import (
+from dentscope.dynamics import (
     CREEP,
     Approach,
     Press,
@@ -23,8 +23,8 @@ from dentscope.impact import (
     scene_of,
     strike,
 )
-from dentscope.impact.mechanisms.base import Surroundings
-from dentscope.impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening
+from dentscope.dynamics.mechanisms.base import Surroundings
+from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from dentscope.models import LAWS
 from dentscope.recordings import read
 from dentscope.start.case_file import read_flow_curve as curve_of_case

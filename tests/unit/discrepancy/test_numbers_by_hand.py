@@ -20,7 +20,7 @@ from dentscope.discrepancy.rank import rank
 from dentscope.discrepancy.unknowns.drift import drift_of
 from dentscope.discrepancy.unknowns.followed import Entries, followed_of
 from dentscope.discrepancy.unknowns.lawerror import FREE, SIZES
-from dentscope.impact.mechanisms.base import Parameter
+from dentscope.dynamics.mechanisms.base import Parameter
 
 
 def test_priors_add_to_one_and_a_wrong_number_is_as_probable_as_physics() -> None:

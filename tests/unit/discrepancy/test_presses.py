@@ -9,8 +9,8 @@ from dentscope.discrepancy.inference.fit import baseline_situations
 from dentscope.discrepancy.nulls.laws import NullCurve
 from dentscope.discrepancy.nulls.press import press
 from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
-from dentscope.impact import Approach, strike
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics import Approach, strike
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
 NOISE = {

@@ -14,7 +14,7 @@ from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import WIDER
 from dentscope.discrepancy.inference.together import refined
 from dentscope.discrepancy.rank import rank
-from dentscope.impact.mechanisms.base import Parameter
+from dentscope.dynamics.mechanisms.base import Parameter
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
 ALIKE = (20.0,) * 8

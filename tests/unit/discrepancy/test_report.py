@@ -12,7 +12,7 @@ from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
 from dentscope.discrepancy.report.text import headline, nowhere, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms import MECHANISMS
 
 OWN = {"sticky-tape": "a tape holds the tip back"}
 SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]

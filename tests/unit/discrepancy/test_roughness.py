@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
-from dentscope.impact.mechanisms.roughness import Layer
-from dentscope.impact.strength import strength_table
+from dentscope.dynamics.mechanisms.roughness import Layer
+from dentscope.dynamics.strength import strength_table
 from dentscope.models import law_named
 
 PAIR = Pair(Material(E=208e9, nu=0.3, Sy=2e9), Material(E=69e9, nu=0.33, Sy=280e6), 1e-3)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Striker, scene_of, strike
+from dentscope.dynamics import Approach, Striker, scene_of, strike
 from dentscope.models import LAWS
 from dentscope.models.export import INPUTS, NAME, OUTPUTS, write_sources
 

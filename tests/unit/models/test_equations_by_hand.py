@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.dynamics import traced
+from dentscope.dynamics.inverse import alpha, infer, mobility
+from dentscope.dynamics.scene import Approach, Friction, scene_of
 from dentscope.fem import Curve
-from dentscope.impact import traced
-from dentscope.impact.inverse import alpha, infer, mobility
-from dentscope.impact.scene import Approach, Friction, scene_of
 from dentscope.models import LAWS, critical_depth, critical_force, yield_constant
 from dentscope.models.kernel import common_parameters, hertz_force, hertz_recovery
 from dentscope.models.published import hardness

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
+from dentscope.dynamics.told.beside import beside_fitted
 from dentscope.fitting import read_tables
 from dentscope.fitting.calibrate import misses, within
 from dentscope.fitting.prediction import predict_by
-from dentscope.impact.told.beside import beside_fitted
 from dentscope.models import LAWS, Uncertainty, critical_depth
 
 DATA = Path(__file__).resolve().parents[3] / "data"

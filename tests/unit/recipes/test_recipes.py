@@ -57,15 +57,15 @@ def test_a_law(recipe):
 def test_a_mechanism(recipe):
     toy = recipe("Add a mechanism")
     toy.write(
-        "impact/mechanisms/toy.py",
+        "dynamics/mechanisms/toy.py",
         neighbour(
-            "impact/mechanisms/tangential_compliance.py",
+            "dynamics/mechanisms/tangential_compliance.py",
             ("TangentialCompliance", "Toy"),
             ('name = "tangential-compliance"', 'name = "toy"'),
         ),
     )
     toy.change(
-        "impact/mechanisms/__init__.py",
+        "dynamics/mechanisms/__init__.py",
         ("from .truncated_tip", "from .toy import Toy\nfrom .truncated_tip"),
         ("    Tilt(),\n", "    Tilt(),\n    Toy(),\n"),
     )

@@ -4,6 +4,7 @@ import csv
 import json
 from pathlib import Path
 
+import dentscope as ds
 import matplotlib.image as mpimg
 import meshio
 import numpy as np
@@ -293,3 +294,19 @@ def test_the_mass_of_the_ball_is_that_of_its_density(tmp_path):
     rigid = GOOD.replace("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "rigid = true", 1)
     path.write_text(rigid.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
     assert read_ball(path).mass == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
+
+
+@pytest.mark.fe
+def test_a_pair_is_solved_without_a_file(tmp_path):
+    """Beside the same numbers of a file; Hertz's force before anything yields."""
+    soft = ds.Material(E=200e9, nu=0.3, Sy=5e9)
+    pair = ds.Pair(ds.Material(E=200e9, nu=0.3), soft, 1e-2)
+    found = ds.case(pair, level="smoke", max_delta_over_R=1e-3)
+    last = found.rows()[-1]
+    hertz = 4.0 / 3.0 * pair.E_reduced * 1e-2**2 * last["delta_over_R"] ** 1.5
+    assert last["force_N"] == pytest.approx(hertz, rel=0.03)
+    for wrong, key in (({"level": "fine"}, "level"), ({"friction": "0.1"}, "coefficient"),
+                       ({"max_delta_over_R": "20 um"}, "max_delta_over_R"),
+                       ({"unload_from": [0.4]}, "unload_from")):  # fmt: skip
+        with pytest.raises(InputError, match=key):
+            ds.case(pair, **wrong)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact.told.onset import first_yield
+from dentscope.dynamics.told.onset import first_yield
 from dentscope.models import LAWS, critical_depth
 from dentscope.start.comparison import compare_laws
 from dentscope.start.judged import USABLE, Departure, _groups, departure, nearest
@@ -68,7 +68,7 @@ def test_first_yield_is_of_the_body_that_yields_first():
 
 def test_restitutions_of_what_is_recommended_agree(found):
     """Side by side stood laws whose restitution is 0.926 and 0.492."""
-    from dentscope.impact import Approach, Striker, scene_of, strike
+    from dentscope.dynamics import Approach, Striker, scene_of, strike
 
     ball = Striker(mass=1.77e-4, tip_radius=PAIR.R)
     e = [

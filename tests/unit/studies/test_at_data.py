@@ -12,7 +12,7 @@ from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.derivatives import derivatives
 from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.rank import sharpened_leading
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 from dentscope.recordings.shipped import FOLDER
 from dentscope.studies import at_data

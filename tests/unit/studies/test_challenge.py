@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from dentscope import recordings
 from dentscope.cli import run
-from dentscope.impact import mechanisms
+from dentscope.dynamics import mechanisms
 from dentscope.studies.challenge import answers, archive, draw, own
 from dentscope.studies.challenge.score import marks, scores
 from dentscope.studies.proof.generators.effects import EFFECTS, OUTSIDE

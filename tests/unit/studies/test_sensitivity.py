@@ -12,7 +12,7 @@ from dentscope.discrepancy.choice import odds
 from dentscope.discrepancy.choice.odds import OUTSIDE
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 from dentscope.recordings.shipped import FOLDER
 from dentscope.studies import sensitivity

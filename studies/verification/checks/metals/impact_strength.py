@@ -21,9 +21,9 @@ from .....campaigns.case import Case
 from .....core.arrays import Array
 from .....core.flow import Flow, Rate, swift, voce
 from .....core.material import Material, Pair
-from .....impact import Approach, Scene, Striker, scene_of, strike
-from .....impact.mechanisms import MECHANISMS, Surroundings
-from .....impact.mechanisms.base import attached
+from .....dynamics import Approach, Scene, Striker, scene_of, strike
+from .....dynamics.mechanisms import MECHANISMS, Surroundings
+from .....dynamics.mechanisms.base import attached
 from .....models import LAWS
 from ....concealed import Metal as ProofMetal
 from ....concealed import Striker as ProofStriker

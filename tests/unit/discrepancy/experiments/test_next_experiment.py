@@ -23,7 +23,7 @@ from dentscope.discrepancy.experiments.next_experiment import (
     rivals_of,
     with_half_the_noise,
 )
-from dentscope.impact.mechanisms import Surroundings
+from dentscope.dynamics.mechanisms import Surroundings
 
 SEEN = "rebound_speed_m_s"
 

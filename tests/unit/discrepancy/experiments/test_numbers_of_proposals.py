@@ -29,7 +29,7 @@ from dentscope.discrepancy.inference.sampling import _next_step
 from dentscope.discrepancy.metal.estimate import rate_prior
 from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
 from dentscope.discrepancy.unknowns.lawerror import components
-from dentscope.impact import Press
+from dentscope.dynamics import Press
 
 BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
         "inertia_kg_m2": 1.2e-6}  # fmt: skip
@@ -202,8 +202,8 @@ def test_a_verdict_draws_500_nulls_and_2000_to_confirm(monkeypatch) -> None:
 
 def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:
     """Components of exp(-(x/2.5)^2/2): what they add up to at two depths 2.5 apart in ln."""
-    from dentscope.impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-    from dentscope.impact.strength import NODES
+    from dentscope.dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+    from dentscope.dynamics.strength import NODES
 
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
     from dentscope.discrepancy.unknowns import lawerror

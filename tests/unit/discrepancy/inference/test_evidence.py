@@ -13,7 +13,7 @@ from dentscope.discrepancy.inference.derivatives import form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
 from dentscope.discrepancy.inference.left_out import Whole
 from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
-from dentscope.impact.mechanisms import Parameter
+from dentscope.dynamics.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
 
 

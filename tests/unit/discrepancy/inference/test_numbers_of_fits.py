@@ -15,8 +15,8 @@ from dentscope.discrepancy.inference.outliers import _neighbours, _wide
 from dentscope.discrepancy.inference.together import refined
 from dentscope.discrepancy.inference.window import sharpened
 from dentscope.discrepancy.rank import rank, sharpened_leading
-from dentscope.impact import Press
-from dentscope.impact.mechanisms.base import Parameter
+from dentscope.dynamics import Press
+from dentscope.dynamics.mechanisms.base import Parameter
 
 NOWHERE = np.zeros(0)
 

@@ -9,7 +9,7 @@ from dentscope.discrepancy.choice.odds import odds_of
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.rank import rank
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
 RATE = next(m for m in MECHANISMS if m.name == "strain-rate-hardening")

@@ -12,7 +12,7 @@ from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.nulls.ensemble import scatter
 from dentscope.discrepancy.nulls.laws import KINDS, Draw, NullReference, curve
 from dentscope.discrepancy.nulls.motion import NullBodies, collide
-from dentscope.impact import strike_many
+from dentscope.dynamics import strike_many
 from dentscope.recordings import read
 
 SETS = Path(__file__).parents[4] / "data" / "recordings"

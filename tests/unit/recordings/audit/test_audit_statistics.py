@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from dentscope.core.material import Material
 from dentscope.core.rig import Quantity, StrikerTable, TargetTable
-from dentscope.impact import Approach, Friction, scene_of, strike_many
-from dentscope.impact import Striker as Body
+from dentscope.dynamics import Approach, Friction, scene_of, strike_many
+from dentscope.dynamics import Striker as Body
 from dentscope.models import LAWS
 from dentscope.recordings import RecordingSet, SetFile, Trials, audit
 

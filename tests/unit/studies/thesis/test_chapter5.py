@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 from dentscope.core.material import Material
-from dentscope.impact import Approach, Striker, scene_of, strike
-from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.dynamics import Approach, Striker, scene_of, strike
+from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import LAWS
 from dentscope.studies.thesis.demonstration import BENDING, RATE, demonstrate
 from dentscope.studies.thesis.demonstration_report import draw, table

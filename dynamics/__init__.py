@@ -1,18 +1,11 @@
-"""Stage impact: a sphere or a round-ended rod striking a flat or a second sphere, or pressed on it.
-
-The stage itself can be called: `dentscope.impact("ball", angle_deg=60)` is `blow` of the same.
-"""
+"""Stage dynamics: a sphere or a rod striking a flat or a second sphere, or pressed on it."""
 
 from __future__ import annotations
-
-import sys
-from types import ModuleType
-from typing import Any
 
 from .batch import impacts
 from .beam import Modes, rod_modes
 from .columns import Impacts
-from .files.blow import Blow, blow
+from .files.blow import Blow
 from .integrate import (
     Settings,
     Trace,
@@ -65,7 +58,6 @@ __all__ = [
     "Support",
     "Trace",
     "arrays_of",
-    "blow",
     "dent_radius",
     "impacts",
     "infer",
@@ -79,15 +71,3 @@ __all__ = [
     "tabulated",
     "traced",
 ]
-
-
-class _Stage(ModuleType):
-    """The stage, which can be called."""
-
-    def __call__(self, *given: Any, **changes: Any) -> Blow | Impacts:
-        """Simulate a blow, as `blow` does."""
-        found: Blow | Impacts = blow(*given, **changes)
-        return found
-
-
-sys.modules[__name__].__class__ = _Stage

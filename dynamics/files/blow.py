@@ -1,30 +1,17 @@
-"""A blow by several laws beside each other: `dentscope.impact(...)`."""
+"""A blow by several laws beside each other, as `dentscope.impact(...)` returns it."""
 
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...core.errors import InputError
-from ...core.inputs.templates import KINDS, template
-from ...core.inputs.toml_input import read_toml
-from ...core.material import Material, Pair
-from ...core.rig import material_keys
 from ...core.tables import frame, html_table, text_table
-from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, objection
 from ...models.shelf import UnknownLaw
-from ..columns import Impacts
 from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..rules import RULES
@@ -32,8 +19,7 @@ from ..told.band import PRESSURE, Band, band_of, compared, idle, vague
 from ..told.checks import checks, outside, reason_above_one
 from ..told.effect import ATOM
 from ..told.onset import largest_mean_pressure
-from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
-from .sweep import SweepTable
+from .setup import Setup
 from .tables import EXACT, SHOWN, impact_row
 
 if TYPE_CHECKING:
@@ -46,13 +32,9 @@ _SHOWN_ROUND_OFF = 1e-7
 # limit: points of a history that is written [-]: a figure's width
 _HISTORY_POINTS = 200
 
-Laws = str | ContactLaw | Sequence[str | ContactLaw]
-"""One or several, by name or as they are."""
-
 _TOO_DEEP = (
     "so deep no law was compared with finite elements; the numbers have no standard deviation"
 )
-_EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
 
 @dataclass(frozen=True)
@@ -245,157 +227,6 @@ class Blow:
 
     def _repr_html_(self) -> str:
         return html_table(("", *self.traces), self.table(), title=self.name)
-
-
-@overload
-def blow(
-    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
-    speed: float | None = None, mass: float | None = None, **changes: Any,
-) -> Blow: ...  # fmt: skip
-@overload
-def blow(
-    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
-    speed: Sequence[float] | NDArray[Any], mass: float | None = None, **changes: Any,
-) -> Impacts: ...  # fmt: skip
-def blow(
-    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
-    speed: float | Sequence[float] | NDArray[Any] | None = None, mass: float | None = None,
-    **changes: Any,
-) -> Blow | Impacts:  # fmt: skip
-    """Simulate a blow, a law beside the other.
-
-    Parameters
-    ----------
-    setup
-        A pair, whose sphere is a ball that meets the flat; a set-up file; or one to start from:
-        `ball`, `rod`, `oblique-ball`.
-    law, laws
-        A contact law or several, each by its name or the law itself, as one's own has no name
-        here; by default those of the set-up.
-    speed
-        Normal speed of the approach [m/s], in place of the set-up's; several give a table, of
-        first blows, at the set-up's angle.
-    mass
-        Of the striker [kg]; a ball without it is solid, of its radius and density.
-    **changes
-        Keys of `[impact]`, for example `impact_speed_m_s=2.0` or `angle_deg=60`.
-
-    Returns
-    -------
-    Blow or Impacts
-        Of one speed everything; of several a table of observables, a law and speed a row.
-
-    Raises
-    ------
-    InputErrors
-        One line for each mistake: file, key, value, what is allowed.
-
-    Examples
-    --------
-    >>> found = blow("ball", law="hertz", impact_speed_m_s=1.0)
-    >>> round(found["hertz"].restitution, 9)  # elastic: everything is given back
-    1.0
-    """
-    given = None if speed is None else _numbers(speed)
-    speeds = None if given is None or given.ndim == 0 else given.ravel()
-    if given is not None:
-        if "impact_speed_m_s" in changes:
-            raise InputError(f"{speed}", key="speed", allowed="left out beside impact_speed_m_s")
-        changes["impact_speed_m_s"] = float(given.flat[0])
-    chosen = _chosen(setup, changes, mass)
-    wanted = _wanted(law, laws) or [law_named(name) for name in chosen.laws]
-    return blow_of(chosen, wanted) if speeds is None else _table(chosen, wanted, speeds)
-
-
-def _table(setup: Setup, laws: Sequence[ContactLaw], speeds: NDArray[Any]) -> Impacts:
-    """A row for each law and speed, all else as the set-up has it."""
-    if setup.repeats > 1:
-        raise InputError(
-            f"{setup.repeats}", key="repeats", allowed="1: of several speeds the first blows"
-        )
-    over = replace(setup, sweep=SweepTable(impact_speed_m_s=tuple(speeds.tolist())))
-    over.check_laws(laws)
-    first, *others = (over.swept(one) for one in laws)
-    for other in others:
-        first = first.joined(other)
-    return first
-
-
-def _numbers(speed: Any) -> NDArray[Any]:
-    """What was given as speed, as numbers; one alone is the set-up's to check."""
-    try:
-        if isinstance(speed, str):
-            raise TypeError
-        found = np.asarray(speed, dtype=float)
-    except (TypeError, ValueError):
-        allowed = "a number above 0 [m/s], or several"
-        raise InputError(repr(speed), key="speed", allowed=allowed) from None
-    if found.ndim and not (found.size and np.all(np.isfinite(found) & (found > 0.0))):
-        raise InputError(f"{speed}", key="speed", allowed="numbers above 0 [m/s]")
-    return found
-
-
-def _wanted(*given: Laws) -> list[ContactLaw]:
-    """The laws that were asked for, by name or as they are, each once."""
-    found: dict[str, ContactLaw] = {}
-    several = [[x] if isinstance(x, str) or not isinstance(x, Iterable) else x for x in given]
-    for one in chain.from_iterable(several):
-        if not isinstance(one, str | ContactLaw):
-            raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
-        law = law_named(one) if isinstance(one, str) else one
-        if found.setdefault(law.name, law) is not law:
-            raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
-    return list(found.values())
-
-
-def _chosen(setup: Pair | str | Path, changes: dict[str, Any], mass: float | None) -> Setup:
-    """The set-up with what is asked for in place of what it says."""
-    if isinstance(setup, Pair):
-        content = _content(setup, changes, mass)
-        return replace(setup_of(content, source="impact"), pair=setup)
-    if changes or mass is not None or setup in KINDS:
-        return _changed(setup, changes, mass)
-    return read_setup(Path(setup))
-
-
-def _content(pair: Pair, changes: dict[str, Any], mass: float | None) -> dict[str, Any]:
-    """A pair as a set-up: the sphere is a ball."""
-    ball: dict[str, Any] = {"shape": "sphere", "tip_radius_m": pair.R, **_body(pair.sphere)}
-    if mass is not None:
-        ball["mass_kg"] = float(mass)
-    elif math.isnan(pair.sphere.density):
-        raise InputError(
-            "missing", source="impact", key="mass",
-            allowed="the mass of the ball [kg], or a density of pair.sphere",
-        )  # fmt: skip
-    laws = {} if pair.perfectly_plastic else {"laws": [FOLLOWING, *DEFAULT_LAWS]}
-    return {
-        "name": "ball on a flat", "target": _body(pair.flat), "strikers": {"ball": ball},
-        "impact": {**laws, **changes},
-    }  # fmt: skip
-
-
-def _body(body: Material) -> dict[str, Any]:
-    density = {} if math.isnan(body.density) else {"density_kg_m3": body.density}
-    return {**material_keys(body), **density}
-
-
-def _changed(setup: str | Path, changes: dict[str, Any], mass: float | None) -> Setup:
-    known = setup in KINDS
-    content = tomllib.loads(template(str(setup))) if known else read_toml(Path(setup))
-    section = {**content.get("impact", {}), **changes}
-    # speed and height exclude each other: what is asked for goes before what the file says
-    for given, other in _EITHER:
-        if given in changes and other not in changes:
-            section.pop(other, None)
-    content = {**content, "impact": section}
-    if mass is not None:
-        strikers = content.get("strikers", {})
-        name = section.get("striker") or next(iter(strikers), "")
-        content["strikers"] = {
-            **strikers, name: {**strikers.get(name, {}), "mass_kg": float(mass)},
-        }  # fmt: skip
-    return setup_of(content, source=str(setup))
 
 
 def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:

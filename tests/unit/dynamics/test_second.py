@@ -6,9 +6,9 @@ import tomllib
 import numpy as np
 import pytest
 from dentscope.core import InputError, InputErrors, Material, Pair
-from dentscope.impact import Approach, Friction, Scene, Striker, strike
-from dentscope.impact.files.second import SecondSphere, mirror_error
-from dentscope.impact.files.setup import setup_of
+from dentscope.dynamics import Approach, Friction, Scene, Striker, strike
+from dentscope.dynamics.files.second import SecondSphere, mirror_error
+from dentscope.dynamics.files.setup import setup_of
 from dentscope.models import LAWS
 
 STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)

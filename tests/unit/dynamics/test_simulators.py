@@ -7,9 +7,9 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact.told.collisions import DASHPOT, HUNT, blow_on, damping_for
-from dentscope.impact.told.discrete_elements import substitutes
-from dentscope.impact.told.simulators import (
+from dentscope.dynamics.told.collisions import DASHPOT, HUNT, blow_on, damping_for
+from dentscope.dynamics.told.discrete_elements import substitutes
+from dentscope.dynamics.told.simulators import (
     BodiesMet,
     chrono_lines,
     drake_lines,

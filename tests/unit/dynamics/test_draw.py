@@ -4,10 +4,10 @@ import warnings
 
 import numpy as np
 import pytest
-from dentscope.impact.files.blow import blow
-from dentscope.impact.files.sweep import SweepTable
-from dentscope.impact.told import draw
+from dentscope.dynamics.files.sweep import SweepTable
+from dentscope.dynamics.told import draw
 from dentscope.models.base import DomainWarning
+from dentscope.start import impact
 
 
 @pytest.mark.parametrize(
@@ -39,10 +39,10 @@ def test_whatever_may_be_swept_has_words():
 def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)
-        found = blow("ball", law=["fitted", "hertz"])
+        found = impact("ball", law=["fitted", "hertz"])
         made = found.plot()
     assert found.doubts == {"hertz": "elastic only"}
-    fast = blow("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
+    fast = impact("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
     assert fast.doubts == {"fitted": "a/R of about 1.1 is beyond 0.6"}
     curves = made.axes[2:]  # below the rig and the dent
     for axis in curves:

@@ -8,8 +8,8 @@ import pytest
 import tomlkit
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
-from dentscope.impact.told.collisions import TSUJI, damping_for
-from dentscope.impact.told.discrete_elements import (
+from dentscope.dynamics.told.collisions import TSUJI, damping_for
+from dentscope.dynamics.told.discrete_elements import (
     lammps_lines,
     substitutes,
     two_balls,

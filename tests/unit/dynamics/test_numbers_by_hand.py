@@ -11,21 +11,21 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.inputs.flow_curve import SPECIMENS, Rise
-from dentscope.impact import Approach, Scene, Striker
-from dentscope.impact.beam import rod_modes
-from dentscope.impact.files.bodies import flowing
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.force import loading_window
-from dentscope.impact.mechanisms import MECHANISMS
-from dentscope.impact.mechanisms.base import Surroundings
-from dentscope.impact.mechanisms.rod_vibration import axial_modes
-from dentscope.impact.mechanisms.roughness import Layer
-from dentscope.impact.mechanisms.strength.strain_rate_hardening import RateProfile
-from dentscope.impact.strength import strength_table
-from dentscope.impact.surface import N_SURFACE, Imprint, Spot, beside, leave
-from dentscope.impact.tabulated.cells import cells_of
-from dentscope.impact.told.band import _shifted, _sizes, band_of, last_blow
-from dentscope.impact.told.checks import _bodies, _either, reason_above_one
+from dentscope.dynamics import Approach, Scene, Striker
+from dentscope.dynamics.beam import rod_modes
+from dentscope.dynamics.files.bodies import flowing
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.force import loading_window
+from dentscope.dynamics.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms.base import Surroundings
+from dentscope.dynamics.mechanisms.rod_vibration import axial_modes
+from dentscope.dynamics.mechanisms.roughness import Layer
+from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import RateProfile
+from dentscope.dynamics.strength import strength_table
+from dentscope.dynamics.surface import N_SURFACE, Imprint, Spot, beside, leave
+from dentscope.dynamics.tabulated.cells import cells_of
+from dentscope.dynamics.told.band import _shifted, _sizes, band_of, last_blow
+from dentscope.dynamics.told.checks import _bodies, _either, reason_above_one
 from dentscope.models import LAWS
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)

@@ -60,7 +60,7 @@ def why_not(scene: Scene) -> str:
     Examples
     --------
     >>> from dentscope.core import Material
-    >>> from dentscope.impact import Approach, Striker, scene_of
+    >>> from dentscope.dynamics import Approach, Striker, scene_of
     >>> from dentscope.models import LAWS
     >>> steel = Material(E=200e9, nu=0.3, Sy=760e6)
     >>> why_not(scene_of(LAWS["hertz"], sphere=steel, flat=steel,

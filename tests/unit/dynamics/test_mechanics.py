@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.impact import Approach, Scene, Striker, strike
-from dentscope.impact.drag import flown
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import Setup, setup_of
-from dentscope.impact.inverse import MeasuredScar, infer
-from dentscope.impact.mechanisms import MECHANISMS
-from dentscope.impact.mechanisms.base import Surroundings
+from dentscope.dynamics import Approach, Scene, Striker, strike
+from dentscope.dynamics.drag import flown
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import Setup, setup_of
+from dentscope.dynamics.inverse import MeasuredScar, infer
+from dentscope.dynamics.mechanisms import MECHANISMS
+from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.models import LAWS
 
 OF = {m.name: m for m in MECHANISMS}

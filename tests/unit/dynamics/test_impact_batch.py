@@ -13,7 +13,7 @@ from dentscope.cli import run
 from dentscope.core import InputError, InputErrors, Material
 from dentscope.core.inputs.templates import template
 from dentscope.core.observables import OBSERVABLES
-from dentscope.impact import (
+from dentscope.dynamics import (
     Approach,
     Friction,
     Settings,
@@ -23,9 +23,9 @@ from dentscope.impact import (
     scene_of,
     strike,
 )
-from dentscope.impact.batch import QUICK
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.files.sweep import swept_scenes
+from dentscope.dynamics.batch import QUICK
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.files.sweep import swept_scenes
 from dentscope.models import LAWS
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)

@@ -5,7 +5,7 @@ import pytest
 from dentscope.core import Material
 from dentscope.core.errors import InputError
 from dentscope.core.material import Pair
-from dentscope.impact import (
+from dentscope.dynamics import (
     CREEP,
     Approach,
     Press,

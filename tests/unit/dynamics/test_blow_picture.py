@@ -4,12 +4,12 @@ import tomllib
 
 import numpy as np
 import pytest
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.told.crater import surfaces_left
+from dentscope.dynamics.told.picture import picture
+from dentscope.dynamics.told.rig_shape import rig_shape
 from dentscope.fitting.craters import crater_shape
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.told.crater import surfaces_left
-from dentscope.impact.told.picture import picture
-from dentscope.impact.told.rig_shape import rig_shape
 from dentscope.models import LAWS
 
 BALL = """

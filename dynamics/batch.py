@@ -101,7 +101,7 @@ def impacts(
     Examples
     --------
     >>> from dentscope.core import Material
-    >>> from dentscope.impact import Approach, Striker, impacts, scene_of
+    >>> from dentscope.dynamics import Approach, Striker, impacts, scene_of
     >>> from dentscope.models import LAWS
     >>> steel = Material(E=200e9, nu=0.3, Sy=760e6)
     >>> ball = scene_of(LAWS["fitted"], sphere=steel, flat=steel,

@@ -69,7 +69,7 @@ def first_yield_speed(scene: Scene) -> float:
     Examples
     --------
     >>> from dentscope.core import Material
-    >>> from dentscope.impact import Approach, Striker, scene_of
+    >>> from dentscope.dynamics import Approach, Striker, scene_of
     >>> from dentscope.models import LAWS
     >>> hard, soft = Material(E=200e9, nu=0.3), Material(E=200e9, nu=0.3, Sy=1e9)
     >>> ball = Striker(mass=7800 * 4 / 3 * 3.14159 * 0.005**3, tip_radius=0.005)

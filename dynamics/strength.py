@@ -57,7 +57,7 @@ def _factors(strength, levels, logs, slopes):  # type: ignore[no-untyped-def]
 class Logs(NamedTuple):
     """Logarithms of what a law says of a pair, over the depth nodes; (levels, NODES) each.
 
-    In the order of the factors of `impact.force`.
+    In the order of the factors of `dynamics.force`.
     """
 
     force: Array  # [N], of loading
@@ -110,7 +110,7 @@ class StrengthTable:
         return np.log(self.depth)
 
     def factors(self, strength: Array) -> Array:
-        """Return the factors of `impact.force`, (N_FACTORS, NODES), for relative strengths."""
+        """Return the factors of `dynamics.force`, (N_FACTORS, NODES), for relative strengths."""
         near = np.exp(_LEVELS[0]) <= np.min(strength) and np.max(strength) <= np.exp(_LEVELS[-1])
         return np.asarray(_factors(strength, *(self._near if near else self._far)))
 

@@ -8,10 +8,10 @@ import warnings
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.impact import Approach, Settings, Striker, scene_of, strike
-from dentscope.impact.force import factor
-from dentscope.impact.tabulated.cells import cell_at, cells_of, column_in
-from dentscope.impact.tabulated.law_table import ERROR, tabulated
+from dentscope.dynamics import Approach, Settings, Striker, scene_of, strike
+from dentscope.dynamics.force import factor
+from dentscope.dynamics.tabulated.cells import cell_at, cells_of, column_in
+from dentscope.dynamics.tabulated.law_table import ERROR, tabulated
 from dentscope.models import LAWS
 from dentscope.models.base import DomainWarning, Kernels, PublishedLaw
 from dentscope.models.kernel import BRANCH_SIGNATURE

@@ -114,8 +114,8 @@ def pressed(scenes: Sequence[Scene]) -> Pressed:
     Examples
     --------
     >>> from dentscope.core import Material
-    >>> from dentscope.impact import Striker, scene_of
-    >>> from dentscope.impact.scene import CREEP, Press
+    >>> from dentscope.dynamics import Striker, scene_of
+    >>> from dentscope.dynamics.scene import CREEP, Press
     >>> from dentscope.models import LAWS
     >>> steel = Material(E=200e9, nu=0.3)
     >>> ball = scene_of(LAWS["hertz"], sphere=steel, flat=steel,

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError, InputErrors
-from dentscope.impact import Impact
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import DEFAULT_LAWS, read_setup, setup_of
+from dentscope.dynamics import Impact
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import DEFAULT_LAWS, read_setup, setup_of
 from dentscope.models import law_named
 from dentscope.models.published.hertz import HERTZ
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError
-from dentscope.impact.files.inverse_file import read_inverse
-from dentscope.impact.inverse import MeasuredScar, alpha, infer, mobility
+from dentscope.dynamics.files.inverse_file import read_inverse
+from dentscope.dynamics.inverse import MeasuredScar, alpha, infer, mobility
 from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
 
 

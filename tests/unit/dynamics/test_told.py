@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.inputs.templates import template
-from dentscope.impact import Approach, Scene, Settings, Striker, impacts, strike
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import setup_of
-from dentscope.impact.files.sweep import SweepTable
-from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.impact.told.checks import (
+from dentscope.dynamics import Approach, Scene, Settings, Striker, impacts, strike
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.files.sweep import SweepTable
+from dentscope.dynamics.told.band import LAW, METALS, SWEPT, band_of, swept_stds
+from dentscope.dynamics.told.checks import (
     checks,
     reason_above_one,
     swept_above_one,
     swept_walls,
 )
-from dentscope.impact.told.effect import effect
-from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
+from dentscope.dynamics.told.effect import effect
+from dentscope.dynamics.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
 
 BRASS = """

@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 from dentscope.core import InputErrors
-from dentscope.impact.files.blow import blow_of
-from dentscope.impact.files.setup import setup_of
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import setup_of
 from dentscope.models import LAWS
 
 LAW = LAWS["fitted"]

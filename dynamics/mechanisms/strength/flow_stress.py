@@ -1,7 +1,7 @@
 """What mechanisms of the flow stress share: a relative strength over the depth.
 
 Each gives the metal's strength relative to the stated one; the law then answers for a pair of that
-strength (`impact.strength`). The strain rate of an indentation is taken as 0.4 v/a, its
+strength (`dynamics.strength`). The strain rate of an indentation is taken as 0.4 v/a, its
 representative strain as 0.2 (a - a_c)/R, as the law of metals that harden has it.
 
 References

@@ -1,0 +1,215 @@
+"""`dentscope.impact(...)`, a blow by several laws, and `dentscope.sweep(...)`, many in a table."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+from numpy.typing import ArrayLike
+
+from ..core.arrays import numbers, one_number
+from ..core.errors import InputError
+from ..core.inputs.templates import KINDS, template
+from ..core.inputs.toml_input import read_toml
+from ..core.material import Material, Pair
+from ..core.rig import material_keys
+from ..dynamics.columns import Impacts
+from ..dynamics.files.blow import Blow, blow_of
+from ..dynamics.files.setup import DEFAULT_LAWS, FOLLOWING, Setup, setup_of
+from ..models import law_named
+from ..models.base import ContactLaw
+
+Laws = str | ContactLaw | Sequence[str | ContactLaw]
+"""One or several, by name or as they are: one's own has no name here."""
+
+_KEYS = {"speed": "impact_speed_m_s", "mass": "mass_kg"}
+_ARRIVALS = ("impact_speed_m_s", "drop_height_m")
+_NO_NUMBERS = ("striker", "support", "finite_tip")
+
+
+def impact(
+    setup: Pair | str | Path = "ball", *, law: Laws = (),
+    speed: float | None = None, mass: float | None = None, drop_height_m: float | None = None,
+    angle_deg: float | None = None, approach_tangential_m_s: float | None = None,
+    approach_spin_rad_s: float | None = None, striker: str | None = None,
+    modes: int | None = None, loss_factor: float | None = None,
+    support: Literal["rigid", "sprung", "plate", "half-space"] | None = None,
+    support_damping_N_s_m: float | None = None, finite_tip: bool | None = None,
+    repeats: int | None = None, flight_s: float | None = None, temperature_K: float | None = None,
+    max_steps: int | None = None, max_contacts: int | None = None,
+) -> Blow:  # fmt: skip
+    """Simulate a blow, a law beside the other.
+
+    Parameters
+    ----------
+    setup
+        A pair, whose sphere is a ball that meets the flat; a set-up file; or one to start from:
+        `ball`, `rod`, `oblique-ball`.
+    law
+        A contact law or several; by default those of the set-up.
+    speed
+        Normal speed of the approach [m/s].
+    mass
+        Of the striker [kg]; a ball without it is solid, of its radius and density.
+    drop_height_m, angle_deg
+        Height of the fall, in place of a speed; between a rod's axis or a sphere's velocity and
+        the flat, 90 is straight down.
+    approach_tangential_m_s, approach_spin_rad_s
+        Speed along the flat, and spin, before the touch.
+    striker
+        Which one of a file with several.
+    modes, loss_factor
+        Vibrations of a rod that are simulated, and their damping.
+    support, support_damping_N_s_m
+        How the flat rests; the damping is of a sprung one.
+    finite_tip
+        Whether the curvature of a rod's tip ends at its shank.
+    repeats
+        Blows on the same spot.
+    flight_s, max_steps, max_contacts
+        Flight between two touches, steps and touches after which it is given up.
+    temperature_K
+        Of the bodies, for a file with thermal softening.
+
+    Returns
+    -------
+    Blow
+        `blow["fitted"].restitution`, `blow.plot()`, `blow.frame()`.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake: file, key, value, what is allowed.
+
+    Examples
+    --------
+    >>> found = impact("ball", law="hertz", speed=1.0)
+    >>> round(found["hertz"].restitution, 9)  # elastic: everything is given back
+    1.0
+    """
+    stated = _stated({k: v for k, v in locals().items() if k not in ("setup", "law")})
+    chosen = _chosen(setup, stated)
+    return blow_of(chosen, _wanted(law) or [law_named(name) for name in chosen.laws])
+
+
+def sweep(
+    setup: Pair | str | Path = "ball", *, law: Laws = (),
+    speed: ArrayLike | None = None, mass: ArrayLike | None = None,
+    drop_height_m: ArrayLike | None = None, angle_deg: ArrayLike | None = None,
+    friction: ArrayLike | None = None, approach_tangential_m_s: ArrayLike | None = None,
+    approach_spin_rad_s: ArrayLike | None = None,
+) -> Impacts:  # fmt: skip
+    """Simulate first blows at every combination of the values that are given.
+
+    Parameters
+    ----------
+    setup, law
+        As of `impact`.
+    speed, mass, drop_height_m, angle_deg, friction, approach_tangential_m_s, approach_spin_rad_s
+        One value or several, shape (n,) [m/s, kg, m, degrees, -, m/s, rad/s]; what is left out is
+        the set-up's. Without any, the set-up's own table `[sweep]`.
+
+    Returns
+    -------
+    Impacts
+        A row a law and combination, a column an observable: `found["restitution"]`.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake: file, key, value, what is allowed.
+
+    Examples
+    --------
+    >>> sweep("ball", law="hertz", speed=[1.0, 2.0])["restitution"].round(6).tolist()
+    [1.0, 1.0]
+    """
+    given = {k: v for k, v in locals().items() if k not in ("setup", "law") and v is not None}
+    values = {
+        _KEYS.get(k, k): numbers(v, key=k, allowed="one number or several").ravel().tolist()
+        for k, v in given.items()
+    }
+    first = {k: row[0] for k, row in values.items() if row and k in (*_ARRIVALS, "mass_kg")}
+    chosen = _chosen(setup, first, sweep=values)
+    if not chosen.sweep.count:
+        raise InputError("no values", key="sweep", allowed="speed=[1.0, 2.0], angle_deg=..., ...")
+    laws = _wanted(law) or [law_named(name) for name in chosen.laws]
+    chosen.check_laws(laws)
+    found, *others = (chosen.swept(one) for one in laws)
+    for other in others:
+        found = found.joined(other)
+    return found
+
+
+def _stated(given: dict[str, Any]) -> dict[str, Any]:
+    """What was given, by the keys of a set-up file; numpy's numbers as Python's own."""
+    found = {}
+    for key, value in given.items():
+        if value is None:
+            continue
+        if key not in _NO_NUMBERS:
+            one_number(value, key=key, allowed="one number; several: dentscope.sweep")
+        found[_KEYS.get(key, key)] = value.item() if hasattr(value, "item") else value
+    return found
+
+
+def _wanted(given: Laws) -> list[ContactLaw]:
+    """The laws that were asked for, by name or as they are, each once."""
+    found: dict[str, ContactLaw] = {}
+    for one in [given] if isinstance(given, str) or not isinstance(given, Iterable) else given:
+        if not isinstance(one, str | ContactLaw):
+            raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
+        law = law_named(one) if isinstance(one, str) else one
+        if found.setdefault(law.name, law) is not law:
+            raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
+    return list(found.values())
+
+
+def _chosen(
+    setup: Pair | str | Path, stated: dict[str, Any], *, sweep: dict[str, Any] | None = None
+) -> Setup:
+    """The set-up with what is asked for in place of what it says."""
+    mass = stated.pop("mass_kg", None)
+    if isinstance(setup, Pair):
+        content = _content(setup, mass)
+    elif setup in KINDS:
+        content = tomllib.loads(template(str(setup)))
+    else:
+        content = read_toml(Path(setup))
+    section = {**content.get("impact", {}), **stated}
+    # speed and height exclude each other: what is asked for goes before what the file says
+    if len(arrivals := stated.keys() & _ARRIVALS) == 1:
+        section = {k: v for k, v in section.items() if k not in _ARRIVALS or k in arrivals}
+    content = {**content, "impact": section} | ({"sweep": sweep} if sweep else {})
+    if mass is not None and not isinstance(setup, Pair):
+        strikers = content.get("strikers", {})
+        name = section.get("striker") or next(iter(strikers), "")
+        content["strikers"] = {**strikers, name: {**strikers.get(name, {}), "mass_kg": mass}}
+    found = setup_of(content, source="impact" if isinstance(setup, Pair) else str(setup))
+    return replace(found, pair=setup) if isinstance(setup, Pair) else found
+
+
+def _content(pair: Pair, mass: float | None) -> dict[str, Any]:
+    """A pair as a set-up: the sphere is a ball."""
+    ball: dict[str, Any] = {"shape": "sphere", "tip_radius_m": pair.R, **_body(pair.sphere)}
+    if mass is not None:
+        ball["mass_kg"] = mass
+    elif math.isnan(pair.sphere.density):
+        raise InputError(
+            "missing", source="impact", key="mass",
+            allowed="the mass of the ball [kg], or a density of pair.sphere",
+        )  # fmt: skip
+    laws = {} if pair.perfectly_plastic else {"laws": [FOLLOWING, *DEFAULT_LAWS]}
+    return {
+        "name": "ball on a flat", "target": _body(pair.flat), "strikers": {"ball": ball},
+        "impact": laws,
+    }  # fmt: skip
+
+
+def _body(body: Material) -> dict[str, Any]:
+    density = {} if math.isnan(body.density) else {"density_kg_m3": body.density}
+    return {**material_keys(body), **density}
