@@ -15,11 +15,14 @@ from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
 from .shared.first_use import tell_first_use
-from .shared.places import folder_option, refuse_beside
+from .shared.places import folder_option, refuse_beside, writable_folder
 from .shared.terminal import say
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
+
+
+_OUT = Path("build/diagnose")
 
 
 def diagnose(
@@ -28,9 +31,7 @@ def diagnose(
         Path | None,
         typer.Argument(help="Recording set: a folder with set.toml, or a shipped name."),
     ] = None,
-    out: Annotated[Path, folder_option("Folder for verdict.json and report.html.")] = Path(
-        "build/diagnose"
-    ),
+    out: Annotated[Path | None, folder_option("Folder for verdict.json and report.html.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same answer.")] = 0,
     confirm: Annotated[
         bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
@@ -59,14 +60,14 @@ def diagnose(
 ) -> None:
     """Compare recordings with the simulation and say what physics is missing, if any.
 
-    Writes verdict.json (for programs) and report.html (for people) into OUT and prints the
-    finding.
+    Writes verdict.json (for programs) and report.html (for people) into OUT, by default
+    build/diagnose/SET, and prints the finding.
     """
     if chapter5:
         others = ("folder", "confirm", "law", "cautious", "assume", "quiet", "report", "solve")
         refuse_beside(context, "beside --chapter5", *others)
         studies.needed_for("`dentscope diagnose --chapter5`")
-        studies.module("chapter5").demonstration(out, seed)
+        studies.module("chapter5").demonstration(out or _OUT / "chapter5", seed)
         return
     from ..recordings.shipped import set_folder, shipped_sets
 
@@ -77,7 +78,10 @@ def diagnose(
         )  # fmt: skip
     from ..recordings import read
 
-    recordings = read(set_folder(folder))
+    place = set_folder(folder)
+    recordings = read(place)
+    # a folder for each set: no report of another one is overwritten
+    out = out or writable_folder(_OUT / place.resolve().name, key="--out")
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import lines
 

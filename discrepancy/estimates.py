@@ -45,7 +45,7 @@ def scores_of(
     left_out: Mapping[str, HeldOut],
     sampled: Mapping[str, float],
 ) -> dict[str, dict[str, float]]:
-    """Return evidence over the baseline, held-out miss and p of fit of every explanation.
+    """Return evidence over the baseline, held-out miss, p of fit and chi2 of every explanation.
 
     Parameters
     ----------
@@ -62,6 +62,7 @@ def scores_of(
             "evidence": sampled.get(f.name, f.log_evidence - base),
             "held_out": left_out[f.name].rms,
             "p_value": p[f.name],
+            "chi2": f.chi2,
         }
         for f in ranking.fits
     }

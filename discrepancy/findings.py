@@ -7,8 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .. import __version__
 from ..core.arrays import Array
+from ..core.errors import InputError
 from .choice.decide import Choice
 from .comparison.problem import Problem
 from .correction import Correction
@@ -16,6 +19,7 @@ from .experiments.next_experiment import Proposal
 from .inference.fit import Fit
 from .locate import Located
 from .rank import Ranking
+from .samples import Samples, drawn
 from .unknowns.wrong_number import WrongNumber, is_wrong
 
 
@@ -154,6 +158,27 @@ class Verdict:
     def problem(self) -> Problem:
         """What was compared."""
         return self.ranking.problem
+
+    def samples(self, draws: int = 1000, *, explanation: str = "") -> Samples:
+        """Return equally probable draws: parameters, stated numbers and what is read again.
+
+        Parameters
+        ----------
+        draws
+            How many.
+        explanation
+            A key of `scores`, as "baseline"; left out: the best explanation.
+
+        Raises
+        ------
+        InputError
+            An explanation that was not fitted.
+        """
+        fits = {f.name: f for f in self.ranking.fits}
+        name = explanation or self.best.name
+        if name not in fits:
+            raise InputError(repr(name), key="explanation", allowed=", ".join(fits))
+        return drawn(self.problem, fits[name], draws, np.random.default_rng(self.seed))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of verdict.json."""

@@ -14,7 +14,6 @@ from ..core.tables import frame, html_table
 from ..discrepancy import Mechanism, Verdict
 from ..discrepancy import diagnose as verdict_of
 from ..discrepancy.report import Story, lines, story_of, write_report
-from ..discrepancy.report.series import STATED, WITH, WITHOUT
 from ..recordings import read
 from ..recordings.shipped import set_folder
 
@@ -76,6 +75,7 @@ def _drawn(story: Story) -> Figure:
     names = list(dict.fromkeys(point.observable for point in story.points))
     figure, axes = panels(len(names))
     against = story.against[0]
+    stated, without, found = story.series
     for axis, name in zip(axes, names, strict=True):
         points = sorted(
             (p for p in story.points if p.observable == name), key=lambda p: p.x[against.key]
@@ -83,14 +83,14 @@ def _drawn(story: Story) -> Figure:
         x = [p.x[against.key] for p in points]
         bars = [[p.measured - p.low for p in points], [p.high - p.measured for p in points]]
         axis.errorbar(x, [p.measured for p in points], bars, fmt="ko", ms=4, label="measured")
-        axis.plot(x, [p.as_stated for p in points], ".", c="0.6", label=STATED)
-        axis.plot(x, [p.best_without for p in points], "C0s", ms=4, mfc="w", label=WITHOUT)
+        axis.plot(x, [p.as_stated for p in points], ".", c="0.6", label=stated)
+        axis.plot(x, [p.best_without for p in points], "C0s", ms=4, mfc="w", label=without)
         if any(math.isfinite(p.with_verdict) for p in points):
-            axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=WITH)
+            axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=found)
         axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
         axis.grid(alpha=0.3)
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+    figure.legend(handles, labels, loc="outside lower center", fontsize=8)
     figure.suptitle(story.finding, fontsize=10, wrap=True)
     return figure
 

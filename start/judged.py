@@ -38,28 +38,34 @@ _HARDENS = ("hardening", "validation-hardening")
 
 
 class Departure(NamedTuple):
-    """How far a law is from finite elements: largest |ln(law/finite elements)| of each."""
+    """How far a law is from finite elements: largest |ln(law/finite elements)| of each.
+
+    `at` are the approaches over R at which they are.
+    """
 
     force: float
     dent: float
     restitution: float
+    at: tuple[float, float, float] = (math.nan, math.nan, math.nan)
 
     @property
     def worst(self) -> float:
         """The largest of the three; infinite where a law has no finite number."""
-        return max(x if math.isfinite(x) else math.inf for x in self)
+        return max(x if math.isfinite(x) else math.inf for x in self[:3])
 
     @property
     def told(self) -> str:
-        """In words: `within 3 %`, or by how many times and in what."""
+        """In words: `within 3 %`, or by how many times, in what and how deep."""
         if self.worst <= math.log(1.5):
             return f"within {max(math.ceil(100.0 * math.expm1(self.worst)), 1)} %"
         if not math.isfinite(self.worst):
             return "no number"
-        name = self._fields[max(range(3), key=lambda k: self[k])]
-        if self.worst > math.log(_NO_FACTOR):
-            return f"off by more than {_NO_FACTOR:g} times in {name}"
-        return f"off by {math.exp(self.worst):.2g} times in {name}"
+        k = max(range(3), key=lambda k: self[k])
+        times = f"more than {_NO_FACTOR:g}"
+        if self.worst <= math.log(_NO_FACTOR):
+            times = f"{math.exp(self.worst):.2g}"
+        where = f" at {self.at[k]:.2g} R" if math.isfinite(self.at[k]) else ""
+        return f"off by {times} times in {self._fields[k]}{where}"
 
 
 class Reference(NamedTuple):
@@ -115,16 +121,23 @@ def departure(law: ContactLaw, reference: Reference) -> Departure:
         back = [_restitution(law, pair, d, float(r)) for d, r in zip(peaks, left, strict=True)]
         dents = np.array([turn[1] for turn in reference.turns])
         seen = dents > RULES.least_dent * peaks
-        return Departure(
-            _largest(force, reference.force), _largest(left[seen], dents[seen]),
-            _largest(np.array(back), np.array([turn[2] for turn in reference.turns])),
+        given = np.array([turn[2] for turn in reference.turns])
+        return _departure(
+            pair.R, (force, reference.force, reference.depth),
+            (left[seen], dents[seen], peaks[seen]), (np.array(back), given, peaks),
         )  # fmt: skip
 
 
-def _largest(law: Array, solved: Array) -> float:
-    if not len(solved):
-        return 0.0
-    return float(np.max(np.abs(np.log(np.maximum(law, 1e-12 * solved) / solved))))
+def _departure(R: float, *compared: tuple[Array, Array, Array]) -> Departure:
+    """The largest ratios of a law's numbers and solved ones, each over its depths."""
+    found = [(0.0, math.nan)] * 3
+    for k, (law, solved, depth) in enumerate(compared):
+        if len(solved):
+            off = np.abs(np.log(np.maximum(law, 1e-12 * solved) / solved))
+            worst = int(np.argmax(off))  # of nan the first
+            found[k] = float(off[worst]), float(depth[worst] / R)
+    (force, there), (dent, left), (back, turned) = found
+    return Departure(force, dent, back, (there, left, turned))
 
 
 def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float:
@@ -227,4 +240,4 @@ def _from_elastic(law: ContactLaw, pair: Pair, last: float) -> Departure:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # of metals, none of which yields
         force, judge = law.loading(pair, depth), LAWS["fitted"].loading(pair, depth)
-    return Departure(_largest(force, judge), 0.0, 0.0)
+    return _departure(pair.R, (force, judge, depth))

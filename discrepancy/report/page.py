@@ -14,7 +14,7 @@ from ...core.observables import OBSERVABLES
 from ...core.output import csv_text, write_file
 from ..findings import Verdict
 from .figures import comparison, correction
-from .series import STATED, WITH, WITHOUT, SeriesPoint
+from .series import SeriesPoint
 from .story import Story, story_of
 from .wording import GLOSSARY
 
@@ -75,7 +75,6 @@ def page(v: Verdict, story: Story) -> str:
         observables=observables,
         corrected=correction(v.corrections, key="law") if v.corrections else "",
         mechanisms=v.mechanisms,
-        series=(STATED, WITHOUT, WITH),
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),
         weightless=any(not p.weight for p in story.points),

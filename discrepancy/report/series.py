@@ -53,7 +53,7 @@ class SeriesPoint:
     as_stated
         Simulated with every number as stated.
     best_without
-        Simulated with the numbers moved within their uncertainties, nothing added.
+        Simulated with the numbers moved as far as it takes, nothing added.
     with_verdict
         The same with the mechanisms that are named; nan without any.
     weight

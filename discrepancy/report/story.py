@@ -11,8 +11,9 @@ import numpy as np
 from ...core.observables import OBSERVABLES
 from ...dynamics.files.second import second_of
 from ..findings import Verdict
+from ..inference.fit import Fit
 from ..rules import RULES
-from .series import Against, SeriesPoint, againsts, points_of, series_of
+from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
 from .text import headline, nowhere, own_parameters, why
 from .wording import (
     compared,
@@ -29,6 +30,9 @@ from .wording import (
 
 # limit: explanations of a picture [-]: a screen
 _STORY_ROWS = 8
+
+# limit: numbers that moved, of a legend [-]: a line
+_STORY_MOVED = 3
 
 
 class Bar(NamedTuple):
@@ -60,6 +64,8 @@ class Story:
         The set, the finding in one sentence, why in three, and what was compared.
     points, against, strikers
         What is drawn, against what, and who struck.
+    series
+        The three simulations that are drawn, each with what its fit took.
     misses, audit, reasons, notes
         Sentences: where the simulation misses, contradictions of the inputs, how the verdict came
         about, what was assumed.
@@ -86,6 +92,7 @@ class Story:
     points: tuple[SeriesPoint, ...]
     against: tuple[Against, ...]
     strikers: tuple[str, ...]
+    series: tuple[str, str, str]
     misses: tuple[str, ...]
     nowhere: str
     audit: tuple[str, ...]
@@ -125,6 +132,7 @@ def story_of(v: Verdict) -> Story:
         points=points_of(v),
         against=againsts(v),
         strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
+        series=(STATED, f"{WITHOUT}: {_took(v, v.ranking.base)}", f"{WITH}: {_took(v, v.best)}"),
         misses=miss_sentences(v.located, most=_STORY_ROWS),
         nowhere=nowhere(v),
         audit=tuple(str(a["message"]) for a in v.audit),
@@ -165,6 +173,20 @@ def _summary(v: Verdict) -> str:
         f"{counted(len(p.cells), 'number')} ({seen}), "
         f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law_name})."
     )
+
+
+def _took(v: Verdict, fitted: Fit) -> str:
+    """How well a simulation fits, and which numbers it moved further than chance would."""
+    p, struck = v.problem, _struck(v)
+    names = [*(number_name(n.name, struck=struck) for n in p.nuisances)]
+    names += ["the contact law"] * (len(fitted.z) - len(names))
+    far: dict[str, float] = {}
+    for name, z in sorted(zip(names, fitted.z, strict=True), key=lambda item: -abs(item[1])):
+        if abs(z) > RULES.pulled:
+            far.setdefault(name, float(z))
+    told = ", ".join(f"{name} by {z:+.1f}" for name, z in list(far.items())[:_STORY_MOVED])
+    least = f"no input by more than {RULES.pulled:g}"
+    return f"chi2 {fitted.chi2:.3g}, for which it moves {told or least} standard deviations"
 
 
 def _found(v: Verdict) -> ToldCells:
@@ -239,14 +261,15 @@ def _scores(v: Verdict) -> ToldCells:
     rows = tuple(
         (
             explanation(name, v.titles), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
-            "-" if math.isnan(s["held_out"]) else f"{s['held_out']:.2f}",
+            f"{s['chi2']:.3g}", "-" if math.isnan(s["held_out"]) else f"{s['held_out']:.2f}",
             percent(v.probabilities.get(name, 0.0)),
         )
         for name, s in sorted(v.scores.items(), key=lambda item: -item[1]["evidence"])
     )  # fmt: skip
     head = (
         "explanation", "weight of evidence over 'nothing missing' [nat]",
-        "share of its own sets that fit no better", "miss on trials kept out [standard errors]",
+        "share of its own sets that fit no better", "chi2, moved inputs counted",
+        "miss on trials kept out [standard errors]",
         "probability",
     )  # fmt: skip
     return ToldCells(head, rows)

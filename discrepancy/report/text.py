@@ -117,6 +117,8 @@ def why(v: Verdict) -> str:
     if lead in v.scores and lead != "baseline":
         times = _times(v.scores[lead]["evidence"])
         best += f", with which the readings are {times} as probable as with nothing missing"
+        own, nothing = (v.scores[name]["chi2"] for name in (lead, "baseline"))
+        best += f" (chi2 {own:.3g} in place of {nothing:.3g}, moved inputs counted)"
     rivals = [
         f"{explanation(k, v.titles)} ({percent(q)})" for k, q in others if q >= RULES.story_least
     ]
@@ -148,7 +150,7 @@ def nowhere(v: Verdict) -> str:
     if nothing >= 0.5:
         return "Nowhere beyond what chance gives over all observables and conditions."
     if v.misfit["as_stated"] > v.misfit["numbers"] and v.misfit["rest"] < 0.5:
-        cause = "as stated the numbers do not fit, but moved within their uncertainties they do"
+        cause = "as stated the numbers do not fit, but moved they do"
     else:
         cause = "each place by itself misses too little"
     return (

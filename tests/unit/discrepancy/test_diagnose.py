@@ -102,6 +102,10 @@ def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Pat
     # 14 % is 2.8 of the stated 5 %
     assert abs(verdict.surprise["target.Sy_Pa"]) > 2.0
     assert any("target.Sy_Pa wants to be" in note for note in verdict.notes)
+    # the legend says what the drawn simulation took: each number that it moved, and its chi2
+    _, told, _ = story_of(verdict).series
+    assert f"chi2 {verdict.scores['baseline']['chi2']:.3g}, for which it moves" in told
+    assert f"yield strength of the flat by {verdict.nuisance_pulls['target.Sy_Pa']:+.1f}" in told
 
 
 def test_a_soft_surface_has_no_name_but_the_report_says_what_it_is_like(tmp_path: Path) -> None:

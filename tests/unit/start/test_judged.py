@@ -30,8 +30,8 @@ def test_what_is_recommended_lies_near_the_finite_elements(found):
     )
     for name in ("thornton", "stronge", "ghaednia", "ceb", "hertz"):
         assert found.departures[name].worst > math.log(1.5)
-    assert found.departures["thornton"].told == "off by 2.8 times in force"
-    assert found.told("hertz") == "off by more than 100 times in dent"
+    assert found.departures["thornton"].told == "off by 2.8 times in force at 0.009 R"
+    assert found.told("hertz").startswith("off by more than 100 times in dent at ")
 
 
 def test_a_depth_beyond_what_was_solved_is_told(found):
@@ -94,6 +94,10 @@ def test_a_law_that_is_twice_as_stiff_is_off_by_two():
     own = departure(LAWS["fitted"], reference)
     doubled = reference._replace(force=2.0 * reference.force)
     assert departure(LAWS["fitted"], doubled).force == pytest.approx(math.log(2.0), abs=own.force)
+    last = reference.depth == reference.depth[-1]
+    deep = reference._replace(force=np.where(last, 2.0, 1.0) * reference.force)
+    at = reference.depth[-1] / reference.pair.R
+    assert departure(LAWS["fitted"], deep).told == f"off by 2 times in force at {at:.2g} R"
     assert Departure(math.log(2.0), 0.0, 0.0).told == "off by 2 times in force"
     assert Departure(0.028, 0.0, 0.01).told == "within 3 %"
     assert Departure(math.nan, 0.0, 0.0).told == "no number"
