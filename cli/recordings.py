@@ -10,7 +10,7 @@ import typer
 
 from .shared.groups import group
 from .shared.places import folder_option
-from .shared.terminal import say
+from .shared.terminal import console, say, show_table
 
 app = group("Recording sets, measured impacts: list, check, audit, new, fetch.")
 
@@ -68,12 +68,20 @@ def audit_command(
 def new(
     folder: NewFolder,
     sphere: Annotated[
-        bool, typer.Option("--sphere", help="The striker is a sphere, not a rod.")
-    ] = False,
+        bool | None,
+        typer.Option("--sphere/--rod", help="The striker; of a sheet a sphere, else a rod."),
+    ] = None,
     sheet: Annotated[
         Path | None,
         typer.Option("--from", metavar="SHEET", help="A laboratory's sheet: XLSX, ODS, CSV."),
     ] = None,
+    column: Annotated[
+        list[str] | None,
+        typer.Option(metavar="HEADER=QUANTITY UNIT", help="What a header of the sheet means."),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only show what of the sheet would be read.")
+    ] = False,
 ) -> None:
     """Write a set to fill in: set.toml with its open values marked, trials.csv with its header.
 
@@ -82,13 +90,15 @@ def new(
     from ..recordings.template import write_template
 
     if sheet is not None:
-        _new_from(sheet, folder, "sphere" if sphere else "rod")
+        _new_from(sheet, folder, column or [], sphere=sphere, dry_run=dry_run)
         return
     write_template(folder, shape="sphere" if sphere else "rod")
     typer.echo(f"{folder}: fill in set.toml and trials.csv, then: dentscope recordings check")
 
 
-def _new_from(sheet: Path, folder: Path, shape: str) -> None:
+def _new_from(
+    sheet: Path, folder: Path, columns: list[str], *, sphere: bool | None, dry_run: bool
+) -> None:
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
     from ..core.errors import InputError
     from ..reduce.output.into_set import store
@@ -100,13 +110,21 @@ def _new_from(sheet: Path, folder: Path, shape: str) -> None:
             raise InputError(
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
-    found = read_sheet(sheet)
-    done = store(found.reduced(sheet), folder, Row(), kind="sheet", options={"shape": shape})
-    typer.echo(f"{sheet}: {_trials(len(found.trials))}")
+    found = read_sheet(sheet, columns)
+    shape = found.shape if sphere is None else "sphere" if sphere else "rod"
+    notes = list(found.left_out)
+    if not dry_run:
+        options = {"shape": shape, "column": "; ".join(columns)}
+        notes += store(found.reduced(sheet), folder, Row(), kind="sheet", options=options).notes
+    typer.echo(f"{sheet}: {_trials(len(found.trials))} of a {shape}")
     for header, became in found.columns:
         typer.echo(f"  {header!r}: {became}")
-    for line in (*found.left_out, *done.notes):
+    for line in notes:
         typer.echo(f"  note: {line}")
+    if dry_run:
+        head, rows = found.shown()
+        show_table(console(), head, rows)
+        return
     typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {quote(str(folder))}")
 
 

@@ -81,6 +81,12 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
     InputError
         The table cannot be read, or does not hold what it should.
     """
+    if options.holds == "trials":
+        from .sheet import read_sheet
+
+        columns = options.column.split(";")
+        found = read_sheet(path, columns, sheet=options.sheet, select=options.select)
+        return found.reduced(path)
     table = read_columns(path, sheet=options.sheet)
     if options.select:
         table = table.select(options.select)
@@ -92,7 +98,11 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
         return _bounces(path, table, options)
     if options.holds == "tension":
         return _tension(path, table, options)
-    from .trials import reduce_leeb, reduce_rebounds, reduce_trials
+    return _readings(path, table, options)
+
+
+def _readings(path: Path, table: Columns, options: TableOptions) -> Reduced:
+    from .trials import reduce_leeb, reduce_rebounds
 
     if options.holds == "rebounds":
         chosen = options.value if "value" in options.model_fields_set else ""
@@ -100,12 +110,10 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
             table, value=chosen, unit=options.value_unit, std=options.value_std,
             ball=options.ball,
         )  # fmt: skip
-    elif options.holds == "leeb":
+    else:
         found = reduce_leeb(
             table, value=options.value, std=options.value_std, speed=options.approach_speed_m_s
         )
-    else:
-        found = reduce_trials(table)
     return Reduced(
         source=path, values=found.values, trials=found.trials, notes=found.notes,
         draw=lambda to: draw_trials(found, to),

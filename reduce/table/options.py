@@ -25,6 +25,9 @@ class TableOptions(BounceOptions, TimeWindow):
         "", description="of a workbook, a ZIP file or a tracker's project; default: the first"
     )
     select: str = Field("", description="COLUMN=VALUE: only these rows")
+    column: str = Field(
+        "", description="of trials, HEADER=quantity unit: what a header means; ; between several"
+    )
     time: str = Field("1", description="column of the time, by name or number")
     value: str = Field("2", description="column of what was measured, by name or number")
     time_unit: Literal["file", "s", "ms", "us", "ns", "min"] = Field(

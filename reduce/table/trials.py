@@ -1,28 +1,19 @@
-"""Tables with a row a trial: any unit in the columns' names, and rebound beside drop heights."""
+"""Tables of readings: rebound heights beside drop heights, and Leeb numbers."""
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
-from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
 from ..rules import RULES
-from ..shared.units import LENGTH, UNITS, quantity_of
+from ..shared.units import LENGTH, quantity_of
 from .file import Columns
-from .heading import DROPS
-
-_QUANTITY_OF_UNIT = {
-    "_m_s": "speed", "_m": "length", "_s": "time", "_N": "force", "_rad_s": "spin",
-    "_deg": "angle", "_K": "temperature",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -171,117 +162,14 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
 
 
 def _drops(table: Columns) -> int:
-    """The first column that is named as a drop height, or h0."""
-    words = rf"{DROPS}|^h_?0(?!\d)"
-    named = [k for k, n in enumerate(table.names) if re.search(words, n, re.IGNORECASE)]
+    """The first column that is named as a drop height."""
+    from .sheet.kinds import kind_of
+
+    kinds = [kind_of(name) for name in table.names]
+    named = [k for k, kind in enumerate(kinds) if kind and kind.name == "drop_height_m"]
     if not named:
         raise InputError(
             "no column is named as a drop height", source=table.source, key="value",
             allowed="its name or number; the rebound heights follow it",
         )  # fmt: skip
     return named[0]
-
-
-def reduce_trials(table: Columns) -> TrialsReduction:
-    """Return the rows of a table whose columns are named as in trials.csv, in any unit.
-
-    `permanent_depth_um`, `impact_speed_mm/s` or `contact_time (ms)` are taken for
-    `permanent_depth_m`, `impact_speed_m_s` and `contact_time_s`.
-
-    Raises
-    ------
-    InputError
-        A column that is no column of trials.csv, or none with an approach.
-    """
-    known = _known_columns(table)
-    labels = _labels(table)
-    names = [name for name, _ in known.values()]
-    if not {"impact_speed_m_s", "drop_height_m"} & set(names):
-        raise InputError(
-            "no column of the approach", source=table.source,
-            allowed="impact_speed or drop_height with a unit",
-        )  # fmt: skip
-    if not any(name in MEASURED for name in names):
-        raise InputError("no measured column", source=table.source, allowed=", ".join(MEASURED))
-    trials = []
-    for label, cells in zip(labels, table.values, strict=True):
-        numbers = {name: cells[k] * unit for k, (name, unit) in known.items()}
-        observed = {
-            name: Measured(float(v), float(numbers.get(name + STD_SUFFIX, math.nan)))
-            for name, v in numbers.items()
-            if math.isfinite(v) and not name.endswith(STD_SUFFIX)
-        }
-        if observed:
-            trials.append(Trial(observed, label=label))
-    place = {name: k for k, (name, _) in known.items()}
-    across = next(n for n in ("impact_speed_m_s", "drop_height_m") if n in place)
-    up = next(n for n in MEASURED if n in place)
-    column = {n: table.values[:, place[n]] * known[place[n]][1] for n in (across, up)}
-    return TrialsReduction(
-        {"trials": Measured(float(len(trials)), math.nan)}, tuple(trials), (),
-        (across, column[across]), (up, column[up]),
-    )  # fmt: skip
-
-
-def _labels(table: Columns) -> list[str]:
-    """Names of the trials: those of the column `trial`, else the number of the row."""
-    if "trial" not in table.names:
-        return [f"{row:03d}" for row in range(1, len(table.cells) + 1)]
-    place = table.names.index("trial")
-    labels = [row[place] for row in table.cells]
-    twice = {name for name in labels if not name or labels.count(name) > 1}
-    if twice:
-        raise InputError(
-            f"{min(twice)!r} stands more than once or is empty", source=table.source, key="trial",
-            allowed="a name of its own for each row",
-        )  # fmt: skip
-    return labels
-
-
-def _known_columns(table: Columns) -> dict[int, tuple[str, float]]:
-    """Place, name in trials.csv and factor of every column."""
-    found: dict[int, tuple[str, float]] = {}
-    wrong: list[InputError] = []
-    numbers = [n for n, c in (CONDITIONS | MEASURED).items() if c.kind != "text"]
-    all_names = [*numbers, *(n + STD_SUFFIX for n in MEASURED)]
-    for place, name in enumerate(table.names):
-        if name in ("trial", "striker", "note", "spot", ""):
-            continue
-        match = _match(name, all_names)
-        if match is None:
-            close = get_close_matches(name, all_names, n=1)
-            wrong.append(
-                InputError(
-                    "unknown column or unit", source=table.source, key=name,
-                    allowed=f"did you mean {close[0]}?" if close else "a column of trials.csv",
-                )
-            )  # fmt: skip
-        elif match[0] in [n for n, _ in found.values()]:
-            wrong.append(InputError("given twice", source=table.source, key=name, allowed="once"))
-        else:
-            found[place] = match
-    if wrong:
-        raise InputErrors(tuple(wrong))
-    return found
-
-
-def _match(given: str, names: list[str]) -> tuple[str, float] | None:
-    """Name in trials.csv of a column, and the factor to its unit."""
-    if given in names:
-        return given, 1.0
-    for name in names:
-        plain = name.removesuffix(STD_SUFFIX)
-        tail = STD_SUFFIX if plain != name else ""
-        ending = next((e for e in _QUANTITY_OF_UNIT if plain.endswith(e)), "")
-        quantity = _QUANTITY_OF_UNIT.get(ending, "number")
-        base = plain.removesuffix(ending)
-        for unit, size in UNITS[quantity].items():
-            words = {unit, unit.replace("/", "_"), unit.replace("µ", "u")} - {""}
-            for word in words:
-                if re.fullmatch(
-                    rf"{base}{tail}(_{re.escape(word)}| ?[\[(]{re.escape(word)}[\])])"
-                    rf"|{base}_{re.escape(word)}{tail}",
-                    given,
-                ):
-                    return name, size
-    return None

@@ -70,7 +70,17 @@ def rows_of_sheets(path: Path) -> dict[str, list[list[str]]]:
         }
         for name, errors in _errors(path).items():
             _put_errors(rows.get(name, []), errors, (0, 0))
+        for name, sheet in found.items():
+            for (top, left), (_, right) in sheet.merged_cell_ranges or ():
+                _spread(rows[name], top, left, right)
     return rows
+
+
+def _spread(rows: list[list[str]], top: int, left: int, right: int) -> None:
+    """Write the words of merged cells into each cell of their first row."""
+    row = rows[top] if top < len(rows) else []
+    if left < len(row) and not isinstance(row[left], NumberCell):
+        row[left : right + 1] = [row[left]] * len(row[left : right + 1])
 
 
 def _put_errors(

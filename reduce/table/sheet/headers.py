@@ -1,35 +1,38 @@
-"""The row of headers of a laboratory's sheet, below its titles, and the columns under it."""
+"""The headers of a laboratory's sheet, in one to three rows below its titles, and its columns."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 from ....core.errors import InputError
 from ....recordings.columns import CONDITIONS
 from ..heading import is_unit
 from .kinds import (
-    APPROACHES,
     CELSIUS,
     MEAN,
-    REBOUNDS,
-    SheetKind,
-    bare,
     is_spread,
     kind_of,
     named,
+    nearest,
     said_unit,
     unit_of,
+    without_unit,
 )
+from .words import APPROACHES, FROM_NORMAL, LATER, REBOUNDS, UNDERSTOOD, SheetKind, bare, letters
 
 NOT_UNDERSTOOD = "left out: not understood"
-_NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*\D{0,6}")
-_LATER = re.compile(
-    r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
-    r"segund[oa]|tercer\w*)\b"
-)
-_NORMAL = re.compile(r"(from|to)( the)? (normal|vertical)|\blot\b|senkrecht")
+_NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*(\D{0,6}|(±|\+/?-).*)")
+_NAME = re.compile(r"[^\W\d_]\S{0,9}\d+")
+"""Such as A1, K-17: letters and a number."""
+_SAID_OF = re.compile(r"\w\s*[:=]\s*\w")
+"""A line such as Operator: Jane."""
+# limit: rows above the numbers in which headers are looked for [-]: a page
+_ROWS = 40
+# limit: rows of one table's headers [-]: titles, names, numbers of readings, units
+_DEPTH = 4
 
 
 @dataclass
@@ -47,13 +50,11 @@ class SheetColumn:
     unit
         Of its numbers; None where the header names none.
     spread
-        Whether it holds the standard deviations of a column to its left.
+        Whether it holds the standard deviations of another column.
     taken
         Cells that were read.
     unitless
         Whether a cell asked for the unit.
-    across
-        Whether it holds the second of two diameters of one dent.
     """
 
     place: int
@@ -63,7 +64,6 @@ class SheetColumn:
     spread: bool = False
     taken: int = 0
     unitless: bool = False
-    across: bool = False
 
     @property
     def no_unit(self) -> str:
@@ -74,85 +74,201 @@ class SheetColumn:
         )  # fmt: skip
 
 
-def understood(rows: Sequence[Sequence[str]]) -> list[int]:
-    """Return how many headers are understood in each of the first rows, below their titles."""
-    heads = (_under_titles(rows, k) for k in range(len(rows[:40])))
-    return [sum(kind_of(cell) is not None for cell in head) for head in heads]
+@dataclass(frozen=True)
+class Head:
+    """Headers of a sheet.
+
+    Parameters
+    ----------
+    first, end
+        SheetRows that they take, from 0, the last excluded.
+    headers
+        Of each column, as the sheet has it.
+    says
+        The same, or what the user says that it is.
+    """
+
+    first: int = 0
+    end: int = 0
+    headers: Sequence[str] = ()
+    says: Sequence[str] = field(default=())
+
+    @property
+    def known(self) -> tuple[int, int, int, int, int]:
+        """How much is understood: quantities, columns, units, texts; less where rows are many."""
+        kinds = [(kind, text) for text in self.says if (kind := kind_of(text)) is not None]
+        numbers = [(kind.name, text) for kind, text in kinds if kind.quantity != "text"]
+        units = sum(unit_of(text, kind) is not None for kind, text in kinds)
+        several = len({(name, is_spread(text)) for name, text in numbers})
+        return several, len(numbers), units, len(kinds) - len(numbers), self.first - self.end
+
+    @property
+    def understood(self) -> int:
+        """How many columns are understood."""
+        return self.known[1] + self.known[3]
 
 
-def headers_of(
-    rows: Sequence[Sequence[str]], source: str
-) -> tuple[int, list[SheetColumn], list[tuple[str, str]]]:
-    """Return the first row below the headers, the columns that are understood, and the others.
+def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
+    """Return the headers that are understood best, `given` as the user says them."""
+    found = Head()
+    for first in range(len(rows[:_ROWS])):
+        for end in range(first + 1, min(first + _DEPTH, len(rows)) + 1):
+            headers = _headers(rows[first:end])
+            if not headers:
+                break
+            if (
+                end < len(rows)
+                and _is_units(rows[end])
+                and not any(map(_is_units, rows[first:end]))
+            ):
+                continue
+            says = [_as_given(header, given) for header in headers]
+            found = max(found, Head(first, end, headers, says), key=lambda head: head.known)
+    return found
+
+
+def _as_given(header: str, given: Mapping[str, str]) -> str:
+    """What the user says of a header, with its own unit where that has none."""
+    said = given.get(bare(header)) or given.get(bare(without_unit(header)), header)
+    kind = kind_of(said)
+    if said is header or kind is None or unit_of(said, kind) is not None:
+        return said
+    return f"{said} ({said_unit(header)})"
+
+
+def _headers(block: Sequence[Sequence[str]]) -> list[str]:
+    """One header a column, of rows of titles, names and units; none where a row is of others."""
+    width = max(map(len, block))
+    padded = [[*row, *[""] * (width - len(row))] for row in block]
+    units = [row for row in padded if _is_units(row)]
+    names = [row for row in padded if row not in units]
+    *above, lowest = names or [[]]
+    sound = all(map(_is_title, above)) and (_is_title(lowest) or _counts(lowest, above[-1:]))
+    if not sound or len(units) > 1:
+        return []
+    below = [*names[1:], *units]
+    columns: list[list[tuple[str, bool]]] = [[] for _ in range(width)]
+    for k, row in enumerate(names):
+        title = ""
+        for place, own in enumerate(row):
+            title = own or title
+            # a title that spans several columns stands over the first of them alone
+            if own or (title and any(lower[place] for lower in below[k:])):
+                columns[place].append((title, bool(own)))
+    unit = units[0] if units else [""] * width
+    return [_one(parts, unit[place].strip("()[] ")) for place, parts in enumerate(columns)]
+
+
+def _one(parts: Sequence[tuple[str, bool]], unit: str) -> str:
+    """The header of a column: its titles and its own name, as far as they belong together."""
+    tail = f" ({unit})" if unit else ""
+    texts = [text for k, (text, _) in enumerate(parts) if text not in [t for t, _ in parts[:k]]]
+    own = " ".join(text for text in texts if (text, True) in parts)
+    whole, title = " ".join(texts), " ".join(text for text in texts if (text, True) not in parts)
+    alone, both = kind_of(own + tail), kind_of(whole + tail)
+    if (title and alone and both in (None, kind_of(title + tail))) or both is None:
+        whole = own or whole
+        if kind_of(whole + tail) is None and texts and kind_of(texts[-1] + tail):
+            whole = texts[-1]
+    return (whole + tail).strip()
+
+
+def _is_units(row: Sequence[str]) -> bool:
+    filled = [cell for cell in row if cell]
+    return bool(filled) and all(
+        is_unit(cell) or cell.strip("()[] ") in (*CELSIUS, "-", "–", "") for cell in filled
+    )
+
+
+def _is_title(row: Sequence[str]) -> bool:
+    """Whether a row holds names or titles: no numbers, no remark, no line of its own."""
+    filled = [cell for cell in row if cell]
+    if not filled or (len(set(filled)) < 2 and row[0]):
+        return False
+    numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
+    said = (row[0].startswith("#") and row[0].strip("# ")) or any(map(_SAID_OF.search, filled))
+    return not said and 2 * numbers <= len(filled)
+
+
+def _counts(row: Sequence[str], above: Sequence[Sequence[str]]) -> bool:
+    """Whether a row numbers the readings below a title: 1, 2, 3, and nothing else."""
+    places = [k for k, cell in enumerate(row) if cell]
+    numbers = [row[k] for k in places]
+    if not above or len(places) < 2 or not all(n.isdecimal() and len(n) == 1 for n in numbers):
+        return False
+    ones = [k for k, n in zip(places, numbers, strict=True) if n == "1"]
+    steps = all(int(b) == int(a) + 1 or b == "1" for a, b in pairwise(numbers))
+    bare_above = (above[0][k] in ("", above[0][k - 1]) for k in places if k not in ones)
+    return numbers[0] == "1" and steps and all(bare_above)
+
+
+def columns_of(
+    rows: Sequence[Sequence[str]], head: Head, source: str
+) -> tuple[list[SheetColumn], list[tuple[str, str]]]:
+    """Return the columns that are understood, and what is told of the others.
 
     Raises
     ------
     InputError
-        No row of headers is understood, or two columns hold the approach of one row.
+        No headers are understood, or two columns hold the approach of one row.
     """
-    known = understood(rows)
-    best = max(range(len(known)), key=lambda k: known[k], default=0)
-    if not known or known[best] < 2:
+    if head.understood < 2:
+        asked = [nearest(header) for header in head.headers if kind_of(header) is None]
+        usual = "columns such as drop height (cm), rebound height (mm), dent diameter (mm)"
         raise InputError(
             "no row of headers is understood", source=source,
-            allowed="columns such as drop height (cm), rebound height (mm), dent diameter (mm)",
+            allowed="; ".join([usual, *filter(None, asked)][:4]),
         )  # fmt: skip
-    head, top = _under_titles(rows, best), best + 1
-    below = list(rows[top]) if top < len(rows) else []
-    filled = [cell for cell in below if cell]
-    if filled and all(is_unit(cell) or cell.strip("()[] ") in CELSIUS for cell in filled):
-        pairs = zip(head, [*below, *[""] * len(head)], strict=False)
-        head, top = [f"{h} ({u.strip('()[] ')})" if u else h for h, u in pairs], top + 1
     told = [
-        (" ".join(filter(None, row)), f"row {k}, left out: above the headers")
-        for k, row in enumerate(rows[:best], start=1)
-        if any(row) and (k < best or head == list(rows[best]))
-    ]
+        (" ".join(dict.fromkeys(filter(None, row))), f"row {k}, left out: above the headers")
+        for k, row in enumerate(rows[: head.first], start=1) if any(row)
+    ]  # fmt: skip
     columns: list[SheetColumn] = []
-    for place, header in enumerate(head):
-        spread = is_spread(header)
-        kind = columns[-1].kind if spread and columns and not named(header) else kind_of(header)
-        if kind is not None and (kind.quantity == "text" or not spread):
-            columns.append(SheetColumn(place, header, kind, unit_of(header, kind)))
-            columns[-1].across = _is_across(columns)
-        elif kind is not None and any(c.kind == kind for c in columns):
-            left = next(c for c in reversed(columns) if c.kind == kind)
-            unit = unit_of(header, kind)
-            columns.append(SheetColumn(place, header, kind, unit or left.unit, spread=True))
-        elif header or any(place < len(row) and row[place] for row in rows[top:]):
-            why = NOT_UNDERSTOOD if header else "left out: no header"
-            told.append((header or f"column {place + 1}", why))
+    quantities = {kind for text in head.says if (kind := kind_of(text)) and not is_spread(text)}
+    for place, (header, says) in enumerate(zip(head.headers, head.says, strict=True)):
+        spread = is_spread(says)
+        kind = columns[-1].kind if spread and columns and not named(says) else kind_of(says)
+        cells = [row[place] for row in rows[head.end :] if place < len(row) and row[place]]
+        if kind is None and place == 0 and header and _are_names(cells):
+            kind = kind_of("trial")
+        if kind is not None and (kind.quantity == "text" or not spread or kind in quantities):
+            spread = spread and kind.quantity != "text"
+            columns.append(SheetColumn(place, header, kind, unit_of(says, kind), spread))
+            if spread and columns[-1].unit is None:
+                columns[-1].unit = next(c.unit for c in columns if c.kind == kind)
+        elif header or cells:
+            told.append((header or f"column {place + 1}", _not_understood(header)))
     kept = []
     for column in columns:
         if why := _left_out(column, columns, source):
             told.append((column.header, f"left out: {why}"))
         else:
             kept.append(column)
-    return top, kept, told
+    return kept, told
 
 
-def _is_across(columns: Sequence[SheetColumn]) -> bool:
-    """Whether the last column is d2 of a dent whose d1 stands before it."""
-    *before, last = columns
-    firsts = (c for c in before if c.kind == last.kind and _ends_in_d(c, "1"))
-    return _ends_in_d(last, "2") and any(firsts)
+def _are_names(cells: Sequence[str]) -> bool:
+    return 2 * sum(_NAME.fullmatch(cell) is not None for cell in cells) > len(cells)
 
 
-def _ends_in_d(column: SheetColumn, number: str) -> bool:
-    return re.search(rf"\bd ?{number}$", named(column.header)) is not None
+def _not_understood(header: str) -> str:
+    if not header:
+        return "left out: no header"
+    like = nearest(header)
+    return f"{NOT_UNDERSTOOD}: {like}" if like else NOT_UNDERSTOOD
 
 
 def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) -> str:
     """Why a column is not taken beside the others; empty where it is."""
     words, name = bare(column.header), column.kind.name
-    if name == "angle_deg" and _NORMAL.search(words):
+    if name == "angle_deg" and re.search(FROM_NORMAL, words):
         raise InputError(
             "an angle from the normal", source=source, key=column.header,
             allowed="that between velocity and flat, or axis and flat: 90 for a normal impact",
         )  # fmt: skip
     if column.kind.quantity == "text":
         return ""
-    if name in REBOUNDS and _LATER.search(words):
+    if name in REBOUNDS and re.search(letters(LATER), words):
         return "of a later bounce"
     same = [c for c in columns if c.kind == column.kind and not c.spread]
     if column.spread:
@@ -169,23 +285,21 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
     return "sums up its neighbours" if column in means and len(means) < len(same) else ""
 
 
-def _under_titles(rows: Sequence[Sequence[str]], best: int) -> list[str]:
-    """The row of headers, each below the title of its columns where the row above holds titles."""
-    head = list(rows[best])
-    filled = [cell for cell in head if cell]
-    if 2 * sum(_NUMBER.fullmatch(cell) is not None for cell in filled) > len(filled):
-        return []  # of numbers
-    above = list(rows[best - 1])[: len(head)] if best else []
-    if above and above[0].startswith("#") and above[0].strip("# "):
-        return head  # a comment
-    if sum(map(bool, above)) < 2 or any(map(is_unit, filter(None, above))):
-        return head
-    title = ""
-    for k, own in enumerate([*above, *[""] * (len(head) - len(above))]):
-        title = own or title
-        joined = f"{title} {head[k]}"
-        # a title that spans several columns stands over the first of them alone
-        alone = not own and kind_of(head[k]) is not None
-        if head[k] and title and not alone and kind_of(joined) is not None:
-            head[k] = joined
-    return head
+def given_columns(columns: Sequence[str]) -> dict[str, str]:
+    """Return what a user says of headers, `HEADER=quantity unit` each, by `bare` header.
+
+    Raises
+    ------
+    InputError
+        Not of that form, or no quantity that is known.
+    """
+    given = {}
+    for text in filter(None, columns):
+        header, _, says = text.rpartition("=")
+        if not header or kind_of(says.strip()) is None:
+            raise InputError(
+                repr(text), source="command line", key="column",
+                allowed=f"HEADER=quantity unit; of {UNDERSTOOD}",
+            )  # fmt: skip
+        given[bare(header)] = says.strip()
+    return given

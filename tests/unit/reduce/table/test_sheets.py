@@ -7,7 +7,8 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.sheet import read_sheet
-from dentscope.reduce.table.sheet.kinds import UNDERSTOOD, kind_of
+from dentscope.reduce.table.sheet.kinds import kind_of
+from dentscope.reduce.table.sheet.words import UNDERSTOOD
 
 GERMAN = """Nr.;Datum;Fallhöhe (cm);Rückprallhöhe (mm);Eindruckdurchmesser (mm);Bemerkung
 1;12.03.2025;5,0;34;0,515;
@@ -45,7 +46,7 @@ def test_a_german_sheet(tmp_path):
     )
 
 
-def test_an_english_sheet_with_titles_units_below_and_repeats(tmp_path):
+def test_an_english_sheet_with_titles_units_below_and_readings(tmp_path):
     path = tmp_path / "drops.csv"
     path.write_text(
         "Steel on brass,,,,\n,,,,\n"
@@ -54,11 +55,10 @@ def test_an_english_sheet_with_titles_units_below_and_repeats(tmp_path):
         '1.0,0.62,0.61,"1,012.5",20\n2.0,0.55,,29.7,20\n'
     )
     found = read_sheet(path)
-    assert [t.label for t in found.trials] == ["005-1", "005-2", "006"]
-    assert [value(found, k, "restitution") for k in range(3)] == [0.62, 0.61, 0.275]
+    assert [t.label for t in found.trials] == ["005", "006"]
+    assert [value(found, k, "restitution") for k in range(2)] == pytest.approx([0.615, 0.275])
     assert value(found, 0, "permanent_depth_m") == pytest.approx(1012.5e-6)
     assert value(found, 0, "temperature_K") == 293.15
-    assert "permanent_depth_m" not in found.trials[1].observables
 
 
 @pytest.mark.parametrize(
@@ -231,11 +231,16 @@ def test_units_in_every_cell_hide_no_separator(tmp_path):
     assert restitutions(sheet) == pytest.approx([math.sqrt(0.42), math.sqrt(0.4)])
 
 
-def test_rebounds_by_their_number_are_repeats_and_their_mean_none(tmp_path):
-    file = tmp_path / "a.csv"
-    file.write_text("Drop (cm);Rebound 1 (mm);Rebound 2 (mm);Mean;SD\n50;320;330;325;5\n")
-    e = [t.observables["restitution"].value for t in read_sheet(file).trials]
-    assert e == pytest.approx([0.8, math.sqrt(0.66)])
+def test_rebounds_by_their_number_are_readings_of_one_trial_and_their_mean_none(tmp_path):
+    """Where no height stands in three rows, their scatter is the noise."""
+    head = "Drop (cm),Rebound 1 (mm),Rebound 2 (mm),Mean,SD"
+    sheet = read_text(tmp_path, f"{head}\n50,320,330,325,5\n60,384,390,387,3\n70,450,448,449,1\n")
+    first = 0.5 * (0.8 + math.sqrt(0.66))
+    assert restitutions(sheet)[0] == pytest.approx(first)
+    pairs = ((320, 330), (384, 390), (450, 448))
+    squares = sum(0.5 * (math.sqrt(a / b) - 1.0) ** 2 for a, b in pairs)
+    std = sheet.trials[0].observables["restitution"].std
+    assert std == pytest.approx(first * math.sqrt(0.5 * squares), rel=0.01)
 
 
 @pytest.mark.parametrize(
@@ -336,7 +341,7 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
     sheet = read_text(
         tmp_path, "Höhe (cm);e1;e2;Mittelwert e;Stdabw. e\n10;0,65;0,66;0,655;0,007\n"
     )
-    assert restitutions(sheet) == [0.65, 0.66]
+    assert restitutions(sheet) == [0.655]
     assert columns(sheet)["Stdabw. e"] == "left out: sums up its neighbours"
 
 
@@ -401,7 +406,7 @@ def test_blanks_that_part_thousands(tmp_path, blank):
 def test_a_unit_may_stand_within_a_header(tmp_path):
     head = "Fallhöhe (in cm);Rückprallhöhe [mm], 1. Messung;Rückprallhöhe in mm, 2. Messung"
     sheet = read_text(tmp_path, f"{head}\n10;43;44\n")
-    assert restitutions(sheet) == pytest.approx([math.sqrt(0.43), math.sqrt(0.44)])
+    assert restitutions(sheet) == pytest.approx([0.5 * (math.sqrt(0.43) + math.sqrt(0.44))])
 
 
 def test_presses_are_rows_too(tmp_path):
@@ -497,9 +502,9 @@ def test_a_row_that_stands_twice_is_told(tmp_path):
     ("rows", "labels", "became"),
     [
         ("A1,10,0.6\nA2,20,0.5\n", ["A1", "A2"], "names of the trials"),
-        ("A1,10,0.6\na1,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
-        ("A1,10,0.6\n,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
-        ("1/2,10,0.6\n1/3,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
+        ("A1,10,0.6\na1,20,0.5\n", ["002", "003"], "in the notes"),
+        ("A1,10,0.6\n,20,0.5\n", ["002", "003"], "in the notes"),
+        ("1/2,10,0.6\n1/3,20,0.5\n", ["002", "003"], "in the notes"),
         ("A1,10,0.6\nA1,20,\n", ["A1"], "names of the trials"),  # of what is taken
     ],
 )
@@ -512,8 +517,7 @@ def test_trials_are_named_by_a_column_whose_entries_differ(tmp_path, rows, label
 def test_of_two_columns_that_one_names_the_trials_whose_entries_differ(tmp_path):
     text = "Probe,Drop no.,drop height (cm),e1,e2\nP,7,10,0.6,0.61\nP,8,20,0.5,\n"
     sheet = read_text(tmp_path, text)
-    assert [t.label for t in sheet.trials] == ["7-1", "7-2", "8"]
-    assert columns(sheet)["Probe"].startswith("left out: others name the trials")
+    assert [(t.label, t.note) for t in sheet.trials] == [("7", "Probe P"), ("8", "Probe P")]
 
 
 def test_a_comment_above_the_headers_is_no_title_of_theirs(tmp_path):
@@ -568,7 +572,7 @@ def test_two_diameters_of_a_dent_are_its_mean(tmp_path):
     sheet = read_text(tmp_path, f"{head}\n10;0,85;0,87\n20;;1,05\n")
     seen = [t.observables["dent_diameter_m"].value for t in sheet.trials]
     assert seen == pytest.approx([0.86e-3, 1.05e-3])
-    assert "the mean of it and d1" in columns(sheet)["Eindruck d2 (mm)"]
+    assert "one of 2 readings of a trial" in columns(sheet)["Eindruck d2 (mm)"]
     # a title above two bare ones, and one alone
     titled = "Fallhöhe;Eindruck;\n(cm);d1 (mm);d2 (mm)\n10;0,85;0,87\n"
     assert value(read_text(tmp_path, titled), 0, "dent_diameter_m") == pytest.approx(0.86e-3)

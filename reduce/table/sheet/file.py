@@ -1,0 +1,207 @@
+"""A laboratory's sheet from its file: the table in it, its headers, and what it became."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....core.errors import InputError
+from ....core.inputs.csv_table import rows_with, selection
+from ....core.inputs.input_file import checked_file
+from ....core.processes.confined import confined
+from ....recordings.columns import MEASURED
+from ....recordings.template import Shape
+from ...measured import Measured, Trial
+from ...reduced import Reduced
+from ...rules import RULES
+from ..file import cells_of, decoded, is_book
+from ..picture import draw_trials
+from ..trials import TrialsReduction
+from ..workbook import NumberCell, rows_of_sheets
+from .cell import decimals_of
+from .headers import Head, columns_of, given_columns, head_of
+from .kinds import without_unit
+from .rows import SheetRows, trials_of
+from .words import APPROACHES, ROD, bare
+
+_TYPED = str.maketrans({
+    "\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u3000": " ", "℃": "°C",
+    "㎜": "mm", "㎝": "cm", "㎛": "µm", "㎲": "µs", "㎳": "ms",
+    **{wide: chr(ord(wide) - 0xFEE0) for wide in map(chr, range(0xFF01, 0xFF5F))},
+})  # fmt: skip
+"""Signs of typesetters as they are typed: the minus, blanks that do not break, wide letters."""
+_CODINGS = ("cp1250", "gb18030", "cp932")
+"""Of old spreadsheets, beside Latin: Polish, Chinese, Japanese."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a sheet became.
+
+    Parameters
+    ----------
+    trials
+        Its rows.
+    columns
+        Of each column of the sheet its header and what became of it, in words.
+    left_out
+        Cells, rows and sheets that were not taken, a line each.
+    striker
+        Keys of set.toml that the sheet has of the ball.
+    """
+
+    trials: tuple[Trial, ...]
+    columns: tuple[tuple[str, str], ...]
+    left_out: tuple[str, ...]
+    striker: Mapping[str, Measured]
+
+    @property
+    def shape(self) -> Shape:
+        """What struck: a rod where the sheet speaks of one, else a sphere."""
+        words = " ".join(bare(header) for header, _ in self.columns)
+        return "rod" if re.search(ROD, words) and not self.striker else "sphere"
+
+    def shown(self) -> tuple[list[str], list[list[str]]]:
+        """Return names and cells of a table of the trials, in the units of a set."""
+        names = dict.fromkeys(name for trial in self.trials for name in trial.observables)
+        rows = [
+            [t.label, *(str(t.observables.get(name, "")) for name in names), t.note]
+            for t in self.trials
+        ]
+        return ["trial", *names, "note"], rows
+
+    def reduced(self, path: Path) -> Reduced:
+        """Return it as what every reduction hands on."""
+        notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
+        seen = self.trials[0].observables
+        across = next(n for n in APPROACHES if n in seen)
+        up = next(n for n in seen if n in MEASURED)
+        x, y = (
+            np.array(
+                [t.observables[n].value if n in t.observables else np.nan for t in self.trials]
+            )
+            for n in (across, up)
+        )
+        values = {"trials": Measured(float(len(self.trials)), math.nan)}
+        found = TrialsReduction(values, self.trials, notes, (across, x), (up, y))
+        return Reduced(
+            path, values, self.trials, lambda to: draw_trials(found, to), notes, self.striker
+        )
+
+
+def read_sheet(
+    path: Path, columns: Sequence[str] = (), *, sheet: str = "", select: str = ""
+) -> Sheet:
+    """Read a laboratory's sheet.
+
+    Drop and rebound height give the restitution, the root of their ratio, and one in a column of
+    its own counts where they do not; where it differs from them, that is told. A drop height that
+    is written once for several rows holds for the rows below; several columns of one quantity are
+    readings of one trial, their mean is taken. A column of trials names them where its entries
+    differ; other texts become notes; a ball's diameter and mass that are the same in all rows are
+    the striker's.
+
+    Parameters
+    ----------
+    path
+        A workbook, of which the first sheet whose headers are understood is read, or a text table
+        in any usual encoding.
+    columns
+        What headers mean, `HEADER=quantity unit` each, where they do not say it themselves.
+    sheet
+        Name of a workbook's sheet, in place of the first that is understood.
+    select
+        `COLUMN=VALUE`: only these rows.
+
+    Raises
+    ------
+    InputError
+        No row of headers is understood, or a column names no unit.
+    """
+    checked_file(path, most=RULES.table_bytes, allowed="a sheet")
+    source, others, decimals, given = str(path), list[str](), "", given_columns(columns)
+    if is_book(path):
+        rows, head, others = _of_book(path, given, sheet)
+    else:
+        between, rows, head = _of_text(path.read_bytes(), source, given)
+        # where commas part the cells, points part no thousands
+        decimals = "." if between == "," and not any("," in c for row in rows for c in row) else ""
+    for said in given:
+        _place(head, said, source, "column")
+    kept, told = columns_of(rows, head, source)
+    if select:
+        name, value = selection(select, source=source)
+        place = _place(head, name, source, "select")
+        cells = [row[place] if place < len(row) else "" for row in rows[head.end :]]
+        picked = {head.end + k for k in rows_with(value, cells, source=source)}
+        rows = [row if k < head.end or k in picked else [] for k, row in enumerate(rows)]
+    decimals = decimals_of(rows[head.end :], kept) or decimals
+    found = trials_of(SheetRows(rows, head.end, kept, decimals, source), told)
+    return Sheet(found.trials, found.told, (*found.left_out, *others), found.striker)
+
+
+def _place(head: Head, name: str, source: str, key: str) -> int:
+    """The column that has a header, with or without its unit."""
+    for k, header in enumerate(head.headers):
+        if header and bare(name) in (bare(header), bare(without_unit(header))):
+            return k
+    raise InputError(
+        f"no header {name!r}", source=source, key=key,
+        allowed=", ".join(filter(None, head.headers)),
+    )  # fmt: skip
+
+
+def _of_book(
+    path: Path, given: Mapping[str, str], sheet: str
+) -> tuple[list[list[str]], Head, list[str]]:
+    """SheetRows and headers of the sheet of a workbook, and a line for each of the others."""
+    found = confined(rows_of_sheets, path, source=str(path))
+    sheets = {k: _typed(rows) for k, rows in found.items() if any(map(any, rows))}
+    if sheet and sheet not in sheets:
+        raise InputError(
+            f"no sheet {sheet!r}", source=str(path), key="sheet", allowed=", ".join(sheets)
+        )
+    heads = {k: head_of(rows, given) for k, rows in sheets.items() if sheet in ("", k)}
+    known = [k for k, head in heads.items() if head.understood > 1]
+    name = next(iter([*known, *heads]), "")
+    others = [f"sheet {k!r}: left out; --sheet {k!r} takes it" for k in sheets if k != name]
+    return sheets.get(name, []), heads.get(name, Head()), others
+
+
+def _typed(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    return [
+        [cell if isinstance(cell, NumberCell) else cell.translate(_TYPED) for cell in row]
+        for row in rows
+    ]
+
+
+def _of_text(
+    raw: bytes, source: str, given: Mapping[str, str]
+) -> tuple[str, list[list[str]], Head]:
+    """Separator, cells and headers, as they are understood best.
+
+    Units in the cells hide the separator from a guess by numbers; old encodings do not say which
+    they are.
+    """
+    texts = [decoded(raw, source)]
+    if not raw.startswith((b"\xff\xfe", b"\xfe\xff")) and not _is_utf8(raw):
+        texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
+    split = [
+        (between, _typed(rows))
+        for text in texts for one in ("", ";", "\t", ",")
+        for between, rows in [cells_of(text.splitlines(keepends=True), source, separator=one)]
+    ]  # fmt: skip
+    return max(((b, rows, head_of(rows, given)) for b, rows in split), key=lambda all: all[2].known)
+
+
+def _is_utf8(raw: bytes) -> bool:
+    try:
+        raw.decode()
+    except UnicodeDecodeError:
+        return False
+    return True

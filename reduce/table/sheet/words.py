@@ -1,0 +1,200 @@
+"""Words of laboratories' sheets for what there is, in ten languages, and nothing else.
+
+English, German, French, Spanish, Italian, Portuguese, Polish, Chinese, Japanese; stems, as regular
+expressions. Letters are compared small and without accents (`bare`): `oe?` is ö or oe.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from typing import NamedTuple
+
+from ....core.observables import LOAD
+
+
+def letters(text: str) -> str:
+    """Return a text without accents, with single blanks."""
+    spread = unicodedata.normalize("NFKD", text.replace("ß", "ss").translate(_STROKES))
+    return " ".join("".join(c for c in spread if not unicodedata.combining(c)).split())
+
+
+def bare(text: str) -> str:
+    """Return a header in small letters without accents, signs and line ends."""
+    return letters(text).lower()
+
+
+_STROKES = str.maketrans("łŁ", "lL")
+
+HEIGHT = r"height|hoe?he|hauteur|altezza|altura|wysokosc|\bwys\b|高|\bh\b|\bht\b"
+DROPS = (
+    r"drop|fall|release|chute|lacher|caduta|lancio|caida|lanzam|queda|lancam|abwurf|spad|zrzut|upad|"
+    r"upuszcz|下落|落下|跌落|落球"
+)
+"""Words of a drop height."""
+REBOUND = (
+    r"rebound|bounce|rue?ck(prall|sprung)|abprall|sprunghoe?he|rebond|remontee|rimbalz|rebote|"
+    r"ressalt|ricochet|odbici|odskok|回弹|反弹|跳ね返|はね返|反発"
+)
+SPEED = r"speed|veloc|geschw|vitesse|predkosc|速度|速さ"
+_AFTER = rf"{REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues|\bapos\b|\bpo\b|后|後"
+_BEFORE = (
+    r"impact|approach|(auf|an)prall|auftreff|stoss|choc|choque|urto|impatto|uderz|zderz|before|"
+    r"\bvor\b|avant|prima|antes|przed|冲击|碰撞|撞击|入射|衝突|衝撃"
+)
+_DENT = (
+    r"\bdent|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
+    r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|凹坑|压坑|圧痕|くぼみ|窪み|へこみ"
+)
+_SCAR = r"\bscar|scratch|kratzspur|kratzer|rayure|rasguno|arranh|graffio|zarysow|划痕|擦伤|擦過痕"
+_BALL = r"\b(ball|sphere|kugel|bille|sfer|bola|esfer|kul)|球|ボール"
+_DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|直径|(?<!半)径"
+_WIDTH = r"wid|breit|largeur|largh|ancho|largura|szerok|宽|幅"
+_LENGTH = r"length|laenge|lange|longueur|lunghezza|longitud|comprimento|dlugosc|长|長さ"
+_DEPTH = r"depth|tief|profond|profund|glebok|深"
+_SINK = r"indent|eindring|penetr|press"
+_MASS = r"mass|masa|weight|gewicht|poids|peso|ciezar|质量|質量|重量"
+_BLOW = r"contact|kontakt|stoss|impact|beruhr|contatto|contat|zderz|uderz|接触|碰撞|衝突"
+_TIME = r"time|duration|zeit|dauer|temps|duree|tempo|tiempo|durat|durac|czas|时间|時間"
+_MOST = r"peak|max|massim|maks|spitze|pico|picco|szczyt|stoss|impact|最大|峰值|衝撃|冲击"
+_FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
+_SPIN = r"\bspin\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
+
+MEANS = (
+    r"mean|average|avg|median\w*|mittel\w*|mw|moyenne?|moy|media|promedio|srednia|平均[値值]?|均值"
+)
+SPREADS = (
+    r"stdev\w*|(std|st|stand\w*)\.?[- ]?(dev|abw)\w*|s\.?d|std|ecart[- ]?types?|"
+    r"(desv|dev|odch)\w*\.? ?(est|pad|tip|st|stand)\w*|desviacion|deviazione|streuung|"
+    r"标准偏?差|標準偏差"
+)
+ERRORS = (
+    r"sem|sigma|σ|error|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre|"
+    r"incerteza|niepewnosc|不确定度|误差|不確かさ|誤差"
+)
+EXTREMES = (
+    r"minim\w*|maxim\w*|min|max|sum|total|summe|suma|somme|最大[值値]?|最小[值値]?|合计|合計|ø|n ?="
+)
+LATER = (
+    r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
+    r"segund[oa]|tercer\w*|drugi\w*|trzeci\w*)\b|第[二三四2-4]"
+)
+FROM_NORMAL = r"(from|to)( the)? (normal|vertical)|\blot\b|senkrecht"
+ALONG = r"tangent|tangenc|horizont|styczn|切向|接線|水平"
+RANGE = r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd|zakres)\b"
+ROD = r"\b(rod|stab|stange|barre|tige|barra|asta|varilla|haste|pret)\b|棒"
+"""Of a striker that is no ball."""
+
+REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
+BODY = BALL_DIAMETER, BALL_MASS = "ball_diameter", "ball_mass"
+APPROACHES = ("drop_height_m", "impact_speed_m_s", LOAD)
+DENTS = ("dent_diameter_m", "permanent_depth_m", "scar_width_m", "scar_length_m")
+"""Of one mark several readings are one."""
+
+
+class SheetKind(NamedTuple):
+    """What a column may become: name, quantity of its unit, and the words that say so.
+
+    Parameters
+    ----------
+    name
+        As in trials.csv, or one of `REBOUNDS`, `BODY`, `note`, `person`.
+    quantity
+        One of `UNITS`, or `text`.
+    parts
+        All of them in any order: the height of fall, the fall's height.
+    also
+        Or this alone.
+    never
+        But not with this.
+    """
+
+    name: str
+    quantity: str
+    parts: tuple[str, ...]
+    also: str = ""
+    never: str = ""
+
+    def is_said(self, words: str) -> bool:
+        """Whether the words of a header, as `bare` gives them, say this."""
+        whole = all(_compiled(part).search(words) for part in self.parts)
+        return (whole or _found(self.also, words)) and not _found(self.never, words)
+
+    @property
+    def said(self) -> str:
+        """Its name in words."""
+        return _UNIT_AT_END.sub("", self.name).replace("_", " ")
+
+
+_UNIT_AT_END = re.compile("_(m|s|m_s|N|K|deg|rad_s|per_s)$")
+
+
+@cache
+def _compiled(pattern: str) -> re.Pattern[str]:
+    return re.compile(letters(pattern))
+
+
+def _found(pattern: str, words: str) -> bool:
+    return bool(pattern) and _compiled(pattern).search(words) is not None
+
+
+# the first that is said
+KINDS = (
+    SheetKind("note", "text",
+        (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|bemerk|kommentar|komentarz|anmerk|"
+         r"remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|备注|说明|備考|コメント|メモ",)),
+    SheetKind("person", "text",
+        (r"operator|observer|experimenter|student|(measured|tested|done) by|prue?fer|bediener|"
+         r"bearbeiter|operateur|operatrice|operatore|operari|operador|wykonal|badajac|"
+         r"操作[员者]|试验员|测试人|測定者|担当|試験者",)),
+    SheetKind("temperature_K", "temperature", ("temperatur|温度",), r"^t$"),
+    SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角度",),
+        never=f"{REBOUND}|contact|kontakt|tilt|neigung"),
+    SheetKind("restitution", "number",
+        ("restitu[tczi]|restytuc|stoss?zahl|stossziffer|恢复系数|反発係数|はね返り係数",),
+        r"^e ?n? ?\d*$|^cor ?\d*$"),
+    SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
+    SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
+        never="drop height|fallhoe?he"),
+    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb)$", ALONG),
+    SheetKind("drop_height_m", "length", (DROPS, HEIGHT),
+        "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
+    SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
+        "^(v( ?n)?|v ?in|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|predkosc|"
+        "速度)$", ALONG),
+    SheetKind("dent_diameter_m", "length", (_DENT, rf"{_DIAMETER}|dm\b|{_WIDTH}|\bd ?\d?$")),
+    SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
+    SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
+    # the largest depth under load is not what stays
+    SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent", _DEPTH),
+        "eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
+        rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
+    SheetKind("contact_time_s", "time", (_BLOW, _TIME), "duree|durata|duracion|duracao",
+        "between|zwischen|entre|miedzy|time of|zeitpunkt"),
+    SheetKind("peak_force_N", "force", (_MOST, _FORCE)),
+    SheetKind(LOAD, "force",
+        (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|test (force|load)|"
+         "prue?f(kraft|last)|试验力|試験力",)),
+    SheetKind(BALL_DIAMETER, "length", (_BALL, _DIAMETER)),
+    SheetKind(BALL_MASS, "mass", (_BALL, _MASS)),
+    SheetKind("trial", "text",
+        (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuch|messung|probe|shot|run|id|"
+         r"drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|probeta|ensaio|"
+         r"medicao|amostra|proba|probka|pomiar|lp|lfd)\b|^drop$|^n°|"
+         "编号|序号|番号|试样|試料",)),
+    *(SheetKind(name, quantity, (f"^{words}$",)) for name, quantity, words in (
+        ("approach_tangential_m_s", "speed", "approach tangential"),
+        ("approach_spin_rad_s", "spin", "approach spin"),
+        ("tangential_rebound_m_s", "speed", "tangential rebound"),
+        ("friction_impulse_ratio", "number", "friction impulse ratio"),
+        ("sliding_length_m", "length", "sliding length"),
+        ("scar_excess_m", "length", "scar excess"),
+        ("press_depth_m", "length", "press depth"),
+        ("recovered_depth_m", "length", "recovered depth"),
+        ("order", "number", "order"),
+    )),
+)  # fmt: skip
+
+UNDERSTOOD = ", ".join(kind.said for kind in KINDS if kind.name != "person")
+"""Names that a header may have, for people."""
