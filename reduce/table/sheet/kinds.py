@@ -38,6 +38,8 @@ SUMMARY = re.compile(
     r"( (value|wert)| ?\(.*\)| ?\d.*| ?[a-z]? ?[=±].*)?"
 )
 """What says that a row sums up others."""
+SUMS = re.compile(_ENDS.format(f"({MEANS}|{letters(SPREADS)})"))
+"""The same of what should name a trial."""
 MEAN = re.compile(_ENDS.format(f"({MEANS})"))
 _WIDE = _ENDS.format(f"({letters(SPREADS)}|{letters(ERRORS)})")
 _SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?", re.IGNORECASE)

@@ -13,7 +13,7 @@ from ...measured import Measured, Trial
 from ...shared.units import UNITS
 from .cell import number_in, why_not
 from .headers import NOT_UNDERSTOOD, SheetColumn
-from .kinds import SUMMARY, kind_of
+from .kinds import SUMMARY, SUMS, kind_of
 from .trial import Readings, became, mean_of, naming_of, note_of, restitutions_of, scatter_of
 from .words import APPROACHES, BALL_DIAMETER, BALL_MASS, BODY, REBOUNDS, UNDERSTOOD, bare
 
@@ -93,6 +93,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
             "no row with an approach and something measured", source=sheet.source,
             allowed=f"a row a drop or a press{why}",
         )  # fmt: skip
+    _check_readings([seen for *_, seen in found.trials], sheet.source)
     striker = _striker(found.body)
     naming = naming_of(rows, [k for k, *_ in found.trials], columns)
     stds = scatter_of([(t.observables, seen) for _, t, seen in found.trials])
@@ -191,6 +192,17 @@ def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
         raise InputErrors(wrong)
 
 
+def _check_readings(readings: Sequence[Readings], source: str) -> None:
+    """Refuse rebounds of one row that fall from column to column as bounces do, by e each."""
+    pairs = [(e[0].value, e[1].value) for r in readings if len(e := r.get("restitution", [])) > 1]
+    if pairs and all(second < first**1.5 for first, second in pairs):
+        raise InputError(
+            "each row's second rebound falls short of its first as the next bounce does",
+            source=source, key="restitution",
+            allowed="drops from one height in one row; later bounces without a header",
+        )  # fmt: skip
+
+
 def _check_columns(
     columns: Sequence[SheetColumn], told: Sequence[tuple[str, str]], source: str
 ) -> None:
@@ -223,12 +235,15 @@ def _aside(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
 
 
 def _summary(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
-    """The cell that says that a row sums up others; a note may say of itself what it likes."""
+    """The cell that says that a row sums up others; a trial's note may say what it likes."""
     kinds = {c.place: c.kind.name for c in columns}
+    names = [row[k] for k, name in kinds.items() if name == "trial" and k < len(row)]
     for place, cell in enumerate(row):
         word, kind = bare(cell).strip(" .:"), kinds.get(place)
         someone = kind == "person" and word in ("max", "min")
-        if kind != "note" and not someone and SUMMARY.fullmatch(word):
+        remark = kind == "note" and (any(names) or not names)
+        sums = SUMMARY.fullmatch(word) or (kind == "trial" and SUMS.search(word))
+        if sums and not remark and not someone:
             return cell
     return ""
 

@@ -48,7 +48,7 @@ _DENT = (
     r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|凹坑|压坑|圧痕|くぼみ|窪み|へこみ"
 )
 _SCAR = r"\bscar|scratch|kratzspur|kratzer|rayure|rasguno|arranh|graffio|zarysow|划痕|擦伤|擦過痕"
-_BALL = r"\b(ball|sphere|kugel|bille|sfer|bola|esfer|kul)|球|ボール"
+_BALL = r"\b(ball|sphere|bille|sfer|bola|esfer|kul)|kugel|球|ボール"
 _DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|直径|(?<!半)径"
 _WIDTH = r"wid|breit|largeur|largh|ancho|largura|szerok|宽|幅"
 _LENGTH = r"length|laenge|lange|longueur|lunghezza|longitud|comprimento|dlugosc|长|長さ"
@@ -157,7 +157,8 @@ KINDS = (
     SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
     SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
         never="drop height|fallhoe?he"),
-    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb)$", ALONG),
+    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb)$",
+        rf"{ALONG}|before|\bvor\b|avant|prima|antes|przed|前"),
     SheetKind("drop_height_m", "length", (DROPS, HEIGHT),
         "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
     SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
@@ -171,7 +172,7 @@ KINDS = (
         "eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
     SheetKind("contact_time_s", "time", (_BLOW, _TIME), "duree|durata|duracion|duracao",
-        "between|zwischen|entre|miedzy|time of|zeitpunkt"),
+        rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}"),
     SheetKind("peak_force_N", "force", (_MOST, _FORCE)),
     SheetKind(LOAD, "force",
         (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|test (force|load)|"

@@ -152,7 +152,10 @@ def test_a_rebound_is_read_beside_the_other_kind_of_approach(tmp_path):
     assert not sheet.left_out
 
 
-@pytest.mark.parametrize("word", ["mean", "SD", "Mittelwert", "Stdabw.", "Average (n = 2)", "Max"])
+@pytest.mark.parametrize(
+    "word",
+    ["mean", "Stdabw.", "Average (n = 2)", "Max", "Ø", "MW ± s", "Mittel Nr. 1-2", "10 cm 平均"],
+)
 def test_a_row_that_sums_up_others_is_no_trial(tmp_path, word):
     text = f"Nr.;Fallhöhe (cm);Stoßzahl;Bemerkung\n1;50;0,61;Mittel\n2;50;0,60;\n{word};50;0,605;\n"
     sheet = read_text(tmp_path, text)
@@ -294,6 +297,7 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
         ("v (m/s),e,e range\n1,0.65,0.02\n", "e range"),
         ("v (m/s),e,rebound (%)\n1,0.65,36\n", "rebound (%)"),
         ("v (m/s),e,T (ms)\n1,0.65,36\n", "T (ms)"),
+        ("v (m/s),e,Zeit nach Aufprall (s)\n1,0.65,36\n", "Zeit nach Aufprall (s)"),
         ("v (m/s),e,Plate temperature (°C),Ball temperature (°C)\n1,0.65,20,25\n",
          "Ball temperature (°C)"),
     ],
@@ -315,6 +319,8 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
          r"drop height: the header names no unit .*allowed: m, cm"),
         ("a;b\n10;5\n20;9\n", "no row of headers is understood"),
         ("Fallhöhe (cm);Abdruck (mm)\n10;5\n", "dent diameter\\? --column 'Abdruck=dent diameter'"),
+        ("Drop (cm),Rebound 1 (cm),Rebound 2 (cm)\n100,64,41\n50,31,20\n",
+         "as the next bounce does"),
         ("v (mph),e\n1,0.6\n", "'mph' is no unit of speed that is known"),
         ("rebound height (mm),dent depth (um)\n43,9\n", "no column such as drop height"),
         ("drop height (cm),h1 (cm),#\n10,4,1\n", r"a name for one of 'h1 \(cm\)'"),
