@@ -27,7 +27,7 @@ NOT_UNDERSTOOD = "left out: not understood"
 _NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*(\D{0,6}|(±|\+/?-).*)")
 _NAME = re.compile(r"[^\W\d_]\S{0,9}\d+")
 """Such as A1, K-17: letters and a number."""
-_SAID_OF = re.compile(r"\w\s*[:=]\s*\w")
+_SAID_OF = re.compile(r"\w\s*[:=]\s*(\w|$)")
 """A line such as Operator: Jane."""
 # limit: rows above the numbers in which headers are looked for [-]: a page
 _ROWS = 40
@@ -81,7 +81,7 @@ class Head:
     Parameters
     ----------
     first, end
-        SheetRows that they take, from 0, the last excluded.
+        Rows that they take, from 0, the last excluded.
     headers
         Of each column, as the sheet has it.
     says
@@ -116,14 +116,10 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
             headers = _headers(rows[first:end])
             if not headers:
                 break
-            if (
-                end < len(rows)
-                and _is_units(rows[end])
-                and not any(map(_is_units, rows[first:end]))
-            ):
-                continue
-            says = [_as_given(header, given) for header in headers]
-            found = max(found, Head(first, end, headers, says), key=lambda head: head.known)
+            units = [_is_units(row) for row in rows[first : end + 1]]
+            if any(units[:-1]) or not units[-1] or end == len(rows):  # or these belong to them
+                says = [_as_given(header, given) for header in headers]
+                found = max(found, Head(first, end, headers, says), key=lambda head: head.known)
     return found
 
 
@@ -186,8 +182,9 @@ def _is_title(row: Sequence[str]) -> bool:
     if not filled or (len(set(filled)) < 2 and row[0]):
         return False
     numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
-    said = (row[0].startswith("#") and row[0].strip("# ")) or any(map(_SAID_OF.search, filled))
-    return not said and 2 * numbers <= len(filled)
+    lines = sum(_SAID_OF.search(cell) is not None for cell in filled)
+    comment = row[0].startswith("#") and row[0].strip("# ")
+    return not comment and 2 * lines < len(filled) and 2 * numbers <= len(filled)
 
 
 def _counts(row: Sequence[str], above: Sequence[Sequence[str]]) -> bool:
@@ -234,12 +231,12 @@ def columns_of(
         if kind is not None and (kind.quantity == "text" or not spread or kind in quantities):
             spread = spread and kind.quantity != "text"
             columns.append(SheetColumn(place, header, kind, unit_of(says, kind), spread))
-            if spread and columns[-1].unit is None:
-                columns[-1].unit = next(c.unit for c in columns if c.kind == kind)
         elif header or cells:
             told.append((header or f"column {place + 1}", _not_understood(header)))
     kept = []
     for column in columns:
+        if column.spread and column.unit is None:
+            column.unit = next(c.unit for c in columns if c.kind == column.kind and not c.spread)
         if why := _left_out(column, columns, source):
             told.append((column.header, f"left out: {why}"))
         else:

@@ -466,12 +466,15 @@ def test_of_two_columns_that_one_names_the_trials_whose_entries_differ(tmp_path)
     assert [(t.label, t.note) for t in sheet.trials] == [("7", "Probe P"), ("8", "Probe P")]
 
 
-@pytest.mark.parametrize("above", ["# ball drops, lab 3, plate S235", "Fallversuche", "Lab: 3"])
+@pytest.mark.parametrize("above", ["# ball drops, lab 3, plate S235", "Fallversuche", "Lab: 3,by:"])
 def test_what_stands_above_the_headers_is_no_title_of_theirs(tmp_path, above):
-    sheet = read_text(tmp_path, f"{above}\nDrop no.,drop height (cm),e\n1,10,0.6\n")
+    sheet = read_text(tmp_path, f"{above}\nDrop no.,drop height (cm),e (n=3)\n1,10,0.6\n")
     *headers, told = sheet.columns
-    assert [header for header, _ in headers] == ["Drop no.", "drop height (cm)", "e"]
-    assert told == (above.replace(",", ""), "row 1, left out: above the headers")
+    assert [header for header, _ in headers] == ["Drop no.", "drop height (cm)", "e (n=3)"]
+    assert told == (
+        " ".join(c.strip() for c in above.split(",")),
+        "row 1, left out: above the headers",
+    )
 
 
 @pytest.mark.parametrize(
