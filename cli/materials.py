@@ -19,13 +19,16 @@ _WORDS = {"E_Pa": "Young's modulus", "nu": "Poisson's ratio", "Sy_Pa": "yield st
 
 def show_materials(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="One of them, or a part of a name. Left out: all.")
+        str,
+        typer.Argument(
+            metavar="NAME", help="A name, or words: 1.4301, S355J2, 'hard brass'. Left out: all."
+        ),
     ] = "",
 ) -> None:
     """List metals and hard materials, or show one with spread, sources and a table for a file."""
-    found = [one for key, one in materials().items() if name.lower() in key]
-    if name in materials():
-        _show(materials()[name])
+    found = [one for one in materials().values() if one.has(name)]
+    if name in materials() or len(found) == 1:
+        _show(materials().get(name) or found[0])
         return
     if not found:
         try:
@@ -47,7 +50,7 @@ def _number(one: Entry, key: str) -> str:
 
 
 def _show(one: Entry) -> None:
-    typer.echo(f"{one.title} ({one.kind})\n")
+    typer.echo(f"{one.name}: {one.title} ({one.kind}{one.also and f'; {one.also}'})\n")
     for key, given in one.numbers.items():
         factor, unit = _UNITS[key]
         spread = f"{given['value'] / factor:.4g} +- {given['std'] / factor:.2g} {unit}".rstrip()

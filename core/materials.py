@@ -1,11 +1,13 @@
 """Metals and hard materials by name: their numbers, with spread and source.
 
-The table is `data/materials/materials.toml`. A body of any input file that names one of them with
-`material = "aluminium-6061-t6"` takes from it what the file leaves out; a stated value goes first.
+The numbers stand in `data/materials/materials.csv`, what was measured of hardening, rate and heat
+beside it. A body of any input file that names one of them with `material = "aluminium-6061-t6"`
+takes from it what the file leaves out; a stated value goes first.
 """
 
 from __future__ import annotations
 
+import csv
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,7 +18,7 @@ from typing import Any
 
 from .errors import InputError
 
-FILE = Path(__file__).resolve().parents[1] / "data" / "materials" / "materials.toml"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "materials"
 
 NUMBERS = ("E_Pa", "nu", "Sy_Pa", "hardness_Pa", "density_kg_m3")
 """Keys of a body's table that an entry may give."""
@@ -28,8 +30,8 @@ class Entry:
 
     Parameters
     ----------
-    name, title, kind, note
-        Name in files, name for people, class of material, what to beware of.
+    name, title, kind, also, note
+        Name in files, name for people, class of material, designations, what to beware of.
     numbers
         By key of `NUMBERS`: value, standard deviation, source.
     laws
@@ -42,7 +44,13 @@ class Entry:
     kind: str
     numbers: Mapping[str, Mapping[str, Any]]
     laws: Mapping[str, Mapping[str, Any]]
+    also: str = ""
     note: str = ""
+
+    def has(self, words: str) -> bool:
+        """Whether every word is a part of its name, designations or description."""
+        text = " ".join((self.name, self.title, self.kind, self.also, self.note)).lower()
+        return all(word in text for word in words.lower().split())
 
     def quantity(self, key: str) -> dict[str, float] | None:
         """Return value and standard deviation as a file writes them; none where unknown."""
@@ -53,21 +61,29 @@ class Entry:
 @cache
 def materials() -> dict[str, Entry]:
     """Return every entry of the table by its name."""
-    content = tomllib.loads(FILE.read_text(encoding="utf-8"))["materials"]
-    return {name: _entry(name, given) for name, given in content.items()}
+    laws = _beside()
+    with (FOLDER / "materials.csv").open(encoding="utf-8", newline="") as stream:
+        return {row["name"]: _entry(row, laws) for row in csv.DictReader(stream)}
 
 
 def sources() -> dict[str, str]:
     """Return the sources by the short names that the entries use."""
-    found: dict[str, str] = tomllib.loads(FILE.read_text(encoding="utf-8"))["sources"]
-    return found
+    return _beside()["sources"]
 
 
-def _entry(name: str, given: Mapping[str, Any]) -> Entry:
-    return Entry(
-        name, given["title"], given["kind"], {k: given[k] for k in NUMBERS if k in given},
-        {k: given[k] for k in ("hardening", "rate", "heat") if k in given}, given.get("note", ""),
-    )  # fmt: skip
+def _beside() -> dict[str, dict[str, Any]]:
+    return tomllib.loads((FOLDER / "materials.toml").read_text(encoding="utf-8"))
+
+
+def _entry(row: Mapping[str, str], laws: Mapping[str, Mapping[str, Any]]) -> Entry:
+    numbers = {
+        key: {"value": float(row[key]), "std": float(row[f"{key}_std"]),
+              "source": row[f"{key}_source"]}
+        for key in NUMBERS if row[key]
+    }  # fmt: skip
+    name = row["name"]
+    own = {k: laws[k][name] for k in ("hardening", "rate", "heat") if name in laws[k]}
+    return Entry(name, row["title"], row["kind"], numbers, own, row["also"], row["note"])
 
 
 def entry_named(name: str) -> Entry:
@@ -85,7 +101,8 @@ def entry_named(name: str) -> Entry:
 
 
 def _near(name: str, likeness: float) -> list[str]:
-    return get_close_matches(name.lower(), materials(), n=3, cutoff=likeness)
+    found = [one.name for one in materials().values() if one.has(name)]
+    return found[:3] or get_close_matches(name.lower(), materials(), n=3, cutoff=likeness)
 
 
 def _instead_of(name: str, likeness: float) -> str:

@@ -1,7 +1,7 @@
 """What the metal's rate and hardening would do to a blow whose file says nothing of them.
 
-The constants are those of the metal that a body names, or the least and the most of the kind in the
-materials table that comes nearest in modulus and strength.
+The constants are those of the metal that a body names, else of others of its kind, else the least
+and the most of the kind in the materials table that comes nearest in modulus and strength.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from ...core.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
 from ...models.choose import follows_flow
+from ...models.hardening import REPRESENTATIVE
 from ..mechanisms.around import weaker_table
 from ..mechanisms.strength.strain_rate_hardening import REFERENCE_RATE
 from ..result import Impact
@@ -56,7 +57,11 @@ def _range_of(
     named = materials().get(body.material)
     own = named is not None and what in named.laws
     chosen = [named] if named is not None and own else _class_of(body, what)
-    sizes = sorted((_numbers(e, what) for e in chosen), key=lambda one: next(iter(one.values())))
+    S = None if own else value_of(body.strength)
+    radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    strain = REPRESENTATIVE * radius / scene.pair.R
+    numbers = (_numbers(e, what, S, strain) for e in chosen)
+    sizes = sorted(numbers, key=lambda one: next(iter(one.values())))
     if not sizes:
         return ""
     ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
@@ -64,14 +69,20 @@ def _range_of(
         effect(last_blow(setup.with_mechanism(mechanism, one), scene.law), found) for one in ends
     ]
     kind = chosen[0].kind
-    whose = body.material if own else f"the nearest in the table ({kind}, {len(sizes)})"
+    same = named is not None and named.kind == kind
+    others = "others of its kind" if same else "the nearest in the table"
+    whose = body.material if own else f"{others} ({kind}, {len(sizes)})"
     return f"with that of {whose}: {' to '.join(told)}"
 
 
 def _class_of(body: BodyTable, what: str) -> list[Entry]:
-    """Entries of the kind whose modulus and strength come nearest; none outside the metals."""
+    """Entries of the body's kind, else that nearest in modulus and strength; none but metals."""
     E, S = value_of(body.E_Pa), value_of(body.strength)
     known = [e for e in materials().values() if what in e.laws and "Sy_Pa" in e.numbers]
+    named = materials().get(body.material)
+    alike = [e for e in known if named is not None and e.kind == named.kind]
+    if alike:
+        return alike
     moduli = [e.numbers["E_Pa"]["value"] for e in known]
     if not min(moduli) <= E <= max(moduli):
         return []
@@ -84,12 +95,18 @@ def _class_of(body: BodyTable, what: str) -> list[Entry]:
     return [e for e in known if e.kind == nearest.kind]
 
 
-def _numbers(entry: Entry, what: str) -> Mapping[str, float]:
-    """An entry's constants as those of the mechanism."""
+def _numbers(entry: Entry, what: str, strength: float | None, strain: float) -> Mapping[str, float]:
+    """An entry's constants as those of the mechanism, of another strength if one is given.
+
+    A stronger state of a metal stands further along its curve, as cold work has left it: what the
+    curve rises from there over the strain of the dent is what the ratio gives.
+    """
     law = entry.laws[what]
     if what == "hardening":
-        S = entry.numbers["Sy_Pa"]["value"]
-        return {"hardening_ratio": law["B_Pa"] / S, "hardening_exponent": law["n"]}
+        S, n = entry.numbers["Sy_Pa"]["value"], law["n"]
+        before = max((strength or S) - S, 0.0) / law["B_Pa"]
+        rise = ((before ** (1.0 / n) + strain) ** n - before) / strain**n
+        return {"hardening_ratio": rise * law["B_Pa"] / (strength or S), "hardening_exponent": n}
     if law["law"] == "cowper-symonds":
         n = 1.0 / law["q"]
         return {"rise_at_1000_per_s": (REFERENCE_RATE / law["D_1_s"]) ** n, "rate_exponent": n}
