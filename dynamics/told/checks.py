@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
-from ...core.materials import unlisted
+from ...core.materials import materials, unlisted
 from ...core.rig import TABOR, Quantity, value_of
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
@@ -308,6 +308,8 @@ def _mechanisms(setup: Setup, law: ContactLaw, found: Impact) -> Iterator[str]:
 def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
     file = setup.file
     for key, body in file.bodies.items():
+        if body.material in materials() and (note := materials()[body.material].note):
+            yield f"{body.material}: {note}"
         if body.hardness_Pa is not None and body.Sy_Pa is not None:
             ratio = body.hardness_Pa.value / body.Sy_Pa.value
             yield f"{key}: hardness over strength {ratio:.3g} as stated; {TABOR:g} for most metals"

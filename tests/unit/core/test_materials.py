@@ -15,6 +15,18 @@ def run(*words):
     return command(list(words))
 
 
+def blow(name, tmp_path, capsys):
+    """What `impact` prints of a hard ball on a material."""
+    file = tmp_path / "ball.toml"
+    file.write_text(
+        f'[target]\nmaterial = "{name}"\n[strikers.ball]\nshape = "sphere"\n'
+        'tip_radius_m = 0.003\nmaterial = "tungsten-carbide-6co"\n'
+        '[impact]\ndrop_height_m = 1.0\nlaws = ["fitted"]\n'
+    )
+    assert run("impact", str(file), "--out", str(tmp_path / "out")) == 0
+    return capsys.readouterr().out
+
+
 def test_materials_with_a_source_for_every_number():
     known, named = materials(), set(sources())
     assert len(known) >= 120
@@ -93,10 +105,11 @@ def test_any_word_of_name_designation_or_description_finds_it(words, name, capsy
     assert name in told
 
 
-def test_polymers_have_a_word_of_warning():
+def test_polymers_have_a_word_of_warning(tmp_path, capsys):
     polymers = [entry for entry in materials().values() if entry.kind == "polymer"]
     assert len(polymers) > 5
     assert all("stiffer and stronger the faster" in entry.note for entry in polymers)
+    assert f"ptfe: {materials()['ptfe'].note}" in blow("ptfe", tmp_path, capsys)
 
 
 def test_the_commands(capsys):
@@ -137,14 +150,8 @@ def test_an_impact_of_two_named_materials(tmp_path, capsys):
 
 def test_hardening_and_rate_are_those_of_the_same_kind_first(tmp_path, capsys):
     """Half-hard brass hardens less than annealed brass, and than aluminium: the told -18 %."""
-    file = tmp_path / "ball.toml"
-    file.write_text(
-        '[target]\nmaterial = "brass-c260-half-hard"\n[strikers.ball]\nshape = "sphere"\n'
-        'tip_radius_m = 0.003\nmaterial = "tungsten-carbide-6co"\n'
-        '[impact]\ndrop_height_m = 1.0\nlaws = ["fitted"]\n'
-    )
-    assert run("impact", str(file), "--out", str(tmp_path / "out")) == 0
-    told = [x for x in capsys.readouterr().out.splitlines() if "others of its kind (brass, 1)" in x]
+    lines = blow("brass-c260-half-hard", tmp_path, capsys).splitlines()
+    told = [line for line in lines if "others of its kind (brass, 1)" in line]
     assert len(told) == 2
     assert -6.0 < float(told[1].split("dent ")[1].split()[0]) < -1.0
 
