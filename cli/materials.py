@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import InputError
-from ..core.materials import Entry, entry_named, materials, sources
+from ..core.inputs.materials import Entry, entry_named, materials, sources
 from .shared.terminal import entry as told
 from .shared.terminal import wrapped
 

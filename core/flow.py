@@ -68,6 +68,10 @@ class FlowCurve:
                 allowed="stresses above 0 [Pa]",
             )
 
+    def __repr__(self) -> str:
+        last = f"{self.stress[-1]:.4g} Pa at {self.strain[-1]:g}"
+        return f"FlowCurve({self.stress[0]:.4g} Pa at 0 to {last}, {len(self.strain)} rows)"
+
     @property
     def strength(self) -> float:
         """Flow stress at first yield [Pa]."""

@@ -24,11 +24,11 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .inputs.materials import Mistyped, filled
 from .inputs.names import FileName
 from .inputs.rig_numbers import RigNumbers, most_inertia, solid_inertia
 from .inputs.toml_input import InputTable
 from .material import Material
-from .materials import Mistyped, filled
 from .observables import GAUGE_KEYS, NOISE_KEYS
 from .rules import RULES
 

@@ -12,6 +12,7 @@ import numpy as np
 from .. import __version__
 from ..core.arrays import Array
 from ..core.errors import InputError
+from ..core.tables import text_table
 from .choice.decide import Choice
 from .comparison.problem import Problem
 from .correction import Correction
@@ -21,6 +22,9 @@ from .locate import Located
 from .rank import Ranking
 from .samples import Samples, drawn
 from .unknowns.wrong_number import WrongNumber, is_wrong
+
+# limit: explanations that are shown [-]: a screen
+_SHOWN = 12
 
 
 class WrongInput(NamedTuple):
@@ -119,6 +123,11 @@ class Verdict:
     best: Fit
     impacts: int
     titles: Mapping[str, str]
+
+    def __repr__(self) -> str:
+        rows = [(f"{self.name}: {self.verdict}", "probability")]
+        rows += [(name, f"{p:.2g}") for name, p in list(self.probabilities.items())[:_SHOWN]]
+        return text_table(rows, numbers=True)
 
     @property
     def verdict(self) -> str:

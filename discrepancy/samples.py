@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.arrays import Array, Integers
 from ..core.output import write_file
+from ..core.tables import text_table
 from .comparison.problem import Problem
 from .inference.fit import Fit
 
@@ -43,6 +44,13 @@ class Samples:
     measured: Mapping[str, Array]
     condition: Mapping[str, Integers]
     units: Mapping[str, str]
+
+    def __repr__(self) -> str:
+        told = [f"draws of {self.explanation}", "5 %", "median", "95 %"]
+        bounds = ((f"{k} [{self.units[k]}]", *np.quantile(x, [0.05, 0.5, 0.95]))
+                  for k, x in self.parameters.items())  # fmt: skip
+        rows = [[name, *(f"{x:.4g}" for x in three)] for name, *three in bounds]
+        return text_table([told, *rows], numbers=True)
 
     def to_netcdf(self, path: Path | str) -> Path:
         """Write a netCDF-4 file: `arviz.from_netcdf(path)` has the groups of ArviZ's schema.

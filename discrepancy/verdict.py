@@ -7,10 +7,12 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 
+from ..core.arrays import one_number
+from ..core.errors import InputError
 from ..core.processes.threads import in_one_thread
 from ..dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism
 from ..dynamics.mechanisms.own import own_mechanisms, uncovered
@@ -117,7 +119,9 @@ def diagnose(
     InputError
         The set holds nothing that can be compared, or a mechanism bears a name of the library.
     """
-    rng = np.random.default_rng(seed)
+    if law not in (None, *get_args(LawChoice)):
+        raise InputError(repr(law), key="law", allowed=", ".join(get_args(LawChoice)))
+    rng = np.random.default_rng(int(one_number(seed, key="seed", allowed="a whole number")))
     own = own_mechanisms(mechanisms)
     progress("auditing the inputs")
     asked = _Asked(recordings, audit_rows(recordings), own, seed, rng, progress)

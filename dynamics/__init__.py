@@ -15,7 +15,7 @@ from .integrate import (
     strike_many,
     strike_rows,
     traced,
-)
+)  # fmt: skip
 from .inverse import Inferred, MeasuredScar, infer
 from .press import Pressed, dent_radius, pressed
 from .result import Impact
@@ -31,43 +31,14 @@ from .scene import (
     Striker,
     Support,
     scene_of,
-)
+)  # fmt: skip
 from .surface import Imprint, Spot
 from .tabulated.law_table import tabulated
 
 __all__ = [
-    "CREEP",
-    "Approach",
-    "Blow",
-    "FlowStress",
-    "ForceTransform",
-    "Friction",
-    "Impact",
-    "Impacts",
-    "Imprint",
-    "Inferred",
-    "Instrument",
-    "MeasuredScar",
-    "Modes",
-    "Press",
-    "Pressed",
-    "Scene",
-    "Settings",
-    "Spot",
-    "Striker",
-    "Support",
-    "Trace",
-    "arrays_of",
-    "dent_radius",
-    "impacts",
-    "infer",
-    "pressed",
-    "rod_modes",
-    "scene_of",
-    "strike",
-    "strike_batch",
-    "strike_many",
-    "strike_rows",
-    "tabulated",
-    "traced",
-]
+    "CREEP", "Approach", "Blow", "FlowStress", "ForceTransform", "Friction", "Impact", "Impacts",
+    "Imprint", "Inferred", "Instrument", "MeasuredScar", "Modes", "Press", "Pressed", "Scene",
+    "Settings", "Spot", "Striker", "Support", "Trace", "arrays_of", "dent_radius", "impacts",
+    "infer", "pressed", "rod_modes", "scene_of", "strike", "strike_batch", "strike_many",
+    "strike_rows", "tabulated", "traced",
+]  # fmt: skip

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.approach import speeds_at_touch
-from ..core.arrays import Array, Integers, Mask
+from ..core.arrays import Array, Integers, Mask, numbers
 from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
@@ -180,13 +180,12 @@ def _conditions(
         "friction": (friction, scene.friction.mu), "mass": (masses, scene.striker.mass),
         "tangential": (tangential, approach.tangential), "spin": (spins, approach.spin),
     }  # fmt: skip
+    given = [
+        numbers(stated if one is None else one, key=key, allowed="numbers")
+        for key, (one, stated) in named.items()
+    ]
     try:
-        arrays = np.broadcast_arrays(
-            *(
-                np.asarray(stated if given is None else given, dtype=float)
-                for given, stated in named.values()
-            )
-        )
+        arrays = np.broadcast_arrays(*given)
     except ValueError as error:
         raise InputError(str(error), key="impacts", allowed="shapes that broadcast") from None
     found = {k: np.array(a, dtype=float).ravel() for k, a in zip(named, arrays, strict=True)}

@@ -86,7 +86,7 @@ class Impacts:
         rows = (["" if x != x else x for x in row.values()] for row in self.rows())
         write_file(Path(path), csv_text(rows, header=self.columns))
 
-    def to_frame(self) -> Any:
+    def frame(self) -> Any:
         """Return a pandas data frame.
 
         Raises

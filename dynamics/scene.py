@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..core.arrays import Array
+from ..core.arrays import Array, one_number
 from ..core.errors import InputError
 from ..core.inputs.rig_numbers import solid_inertia
 from ..core.material import Material, Pair
@@ -25,6 +25,14 @@ from .strength import StrengthTable
 from .surface import Spot
 
 STANDARD_GRAVITY = 9.81
+
+
+def _check(value: float, key: str, *, least: str = "a number above 0") -> None:
+    """Refuse a number below its least, or what is none: "1 m/s", `True`, a series."""
+    if not isinstance(value, float):
+        value = one_number(value, key=key, allowed=least)
+    if not math.isfinite(value) or value < 0.0 or (value == 0.0 and least != "0 or more"):
+        raise InputError(f"{value:g}", key=key, allowed=least)
 
 
 @unstated_equal
@@ -58,9 +66,8 @@ class Striker:
     name: str = ""
 
     def __post_init__(self) -> None:
-        for key, value in (("mass_kg", self.mass), ("tip_radius_m", self.tip_radius)):
-            if not (value > 0.0 and math.isfinite(value)):
-                raise InputError(f"{value:g}", key=key, allowed="a number above 0")
+        _check(self.mass, "mass_kg")
+        _check(self.tip_radius, "tip_radius_m")
         if math.isnan(self.radius):
             object.__setattr__(self, "radius", self.tip_radius)
         if math.isnan(self.inertia):
@@ -146,8 +153,7 @@ class Friction:
     stiffness: float = math.inf
 
     def __post_init__(self) -> None:
-        if not self.mu >= 0.0:
-            raise InputError(f"{self.mu:g}", key="friction.coefficient", allowed="0 or more")
+        _check(self.mu, "friction.coefficient", least="0 or more")
         if math.isnan(self.mu_static):
             object.__setattr__(self, "mu_static", self.mu)
 
@@ -193,16 +199,14 @@ class Approach:
     spin: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.speed > 0.0 and math.isfinite(self.speed)):
-            raise InputError(f"{self.speed:g}", key="impact_speed_m_s", allowed="a number above 0")
+        _check(self.speed, "impact_speed_m_s")
         if not 0.0 <= self.angle <= math.pi / 2.0 + 1e-12:
             raise InputError(f"{math.degrees(self.angle):g}", key="angle_deg", allowed="0 to 90")
 
     @classmethod
     def dropped(cls, height: float, **others: float) -> Approach:
         """Return the approach after a free fall over `height` [m]: v = sqrt(2 g H)."""
-        if not (height > 0.0 and math.isfinite(height)):
-            raise InputError(f"{height:g}", key="drop_height_m", allowed="a number above 0")
+        _check(height, "drop_height_m")
         return cls(speed=math.sqrt(2.0 * STANDARD_GRAVITY * height), **others)
 
 
@@ -226,8 +230,7 @@ class Press:
     rate: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.load > 0.0 and math.isfinite(self.load)):
-            raise InputError(f"{self.load:g}", key="load_N", allowed="a number above 0")
+        _check(self.load, "load_N")
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,10 +245,8 @@ class Instrument:
     scan_height: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.scan_step > 0.0 and math.isfinite(self.scan_step)):
-            raise InputError(f"{self.scan_step:g}", key="scan_step_m", allowed="a number above 0")
-        if not (self.scan_height >= 0.0 and math.isfinite(self.scan_height)):
-            raise InputError(f"{self.scan_height:g}", key="scan_height_m", allowed="0 or more")
+        _check(self.scan_step, "scan_step_m")
+        _check(self.scan_height, "scan_height_m", least="0 or more")
 
 
 _RIGID, _FRESH = Modes(), Spot()

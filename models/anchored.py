@@ -20,7 +20,7 @@ from ..core.arrays import Array
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
 from .closed_form import contact
-from .driver import Depths
+from .driver import Depths, depths_of
 from .fitted import ClosedForm, bodies_of
 from .kernel import common_parameters, critical_depth
 from .rules import RULES
@@ -91,7 +91,7 @@ class AnchoredLaw(ContactLaw):
 
     def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
         """What the anchor says of itself at this depth over R; see `ContactLaw.uncertainty`."""
-        over = np.asarray(depth, dtype=float) / pair.R
+        over = depths_of(depth) / pair.R
         return self.anchor.uncertainty(self.at, over * self.at.R)
 
     @cached_property

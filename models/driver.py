@@ -62,6 +62,17 @@ def map_residual(kernel, par, row, peak, sphere, flat):
             flat[i] = f
 
 
+def depths_of(given: Depths) -> Array:
+    """Return approaches as numbers [m], of their own shape.
+
+    Raises
+    ------
+    InputError
+        Text, as "20 um", or what else is no number.
+    """
+    return numbers(given, key="depth", allowed="depths in m")
+
+
 class Rows(NamedTuple):
     """A call taken apart: what each entry of the answer needs."""
 
@@ -79,7 +90,7 @@ def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> 
     InputError
         A depth is not a number.
     """
-    d = numbers(depth, key="depth", allowed="depths in m")
+    d = depths_of(depth)
     if not np.all(np.isfinite(d)):
         raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
     if isinstance(pair, Pair):

@@ -30,7 +30,7 @@ from .closed_form import (
     spread_at,
 )
 from .correction import PairCorrection
-from .driver import Depths, Pairs
+from .driver import Depths, Pairs, depths_of
 from .kernel import (
     N_COMMON,
     E,
@@ -147,7 +147,7 @@ class ClosedForm(ContactLaw):
         if self.calibration is None:
             return super().uncertainty(pair, depth)
         numbers = PairNumbers(*(x[0] for x in self.numbers(bodies_of([pair]))))
-        return self.calibration.of(numbers, np.asarray(depth, dtype=float) / pair.R)
+        return self.calibration.of(numbers, depths_of(depth) / pair.R)
 
     def gradient(self, pair: Pair, depth: Depths) -> dict[str, Array]:
         """Derivatives of the loading force, exact to round-off (complex steps).
@@ -170,7 +170,7 @@ class ClosedForm(ContactLaw):
         InputError
             A rigid body, or a depth of zero or less.
         """
-        d = np.asarray(depth, dtype=float)
+        d = depths_of(depth)
         if pair.sphere.rigid or pair.flat.rigid:
             raise InputError("a rigid body has no modulus", key="rigid", allowed="two that deform")
         if not np.all(d > 0.0):
@@ -200,7 +200,7 @@ class ClosedForm(ContactLaw):
         return contact(depth / R, alone).F * R**2 / (k_s + k_f)
 
     def _each(self, pair: Pair, depth: Depths, which: str, open_value: float) -> Array:
-        par, d = self.parameters(pair), np.asarray(depth, dtype=float)
+        par, d = self.parameters(pair), depths_of(depth)
         out = np.full(d.shape, open_value)
         closed = d > 0.0
         out[closed] = [getattr(contact_of(par, x), which) for x in d[closed]]
@@ -215,7 +215,7 @@ class ClosedForm(ContactLaw):
     def _beyond(self, pair: Pairs, depth: Depths) -> str:
         """Name the first bound that is left; empty inside."""
         pairs = [pair] if isinstance(pair, Pair) else list(pair)
-        d = np.asarray(depth, dtype=float)
+        d = depths_of(depth)
         each = len(pairs) > 1 and d.ndim > 0 and d.shape[0] == len(pairs)
         for number, p in enumerate(pairs):
             deepest = float(np.max(d[number] if each else d, initial=0.0))

@@ -40,7 +40,7 @@ from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
 from .base import ContactLaw, Kernels, Standing
 from .closed_form import Bodies, PairNumbers, contact, plastic_depth
-from .driver import Depths, Pairs
+from .driver import Depths, Pairs, depths_of
 from .fitted import ClosedForm, bodies_of
 from .kernel import common_parameters, critical_depth
 from .rules import RULES
@@ -127,7 +127,7 @@ class HardeningLaw(ContactLaw):
     def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
         x, at, *_ = _path(self, pair)
-        d = np.asarray(depth, dtype=float)
+        d = depths_of(depth)
         inside = np.interp(np.log(np.maximum(d / pair.R, 1e-300)), x, at.share)
         return np.where(d > 0.0, inside, pair.elastic_share)
 
@@ -136,7 +136,7 @@ class HardeningLaw(ContactLaw):
         x, _, sizes, _ = _path(self, pair)
         if sizes is None:
             return super().uncertainty(pair, depth)
-        d = np.asarray(depth, dtype=float)
+        d = depths_of(depth)
         place = np.log(np.maximum(d / pair.R, 1e-300))
         return Uncertainty(*(np.where(d > 0.0, np.interp(place, x, size), LEAST) for size in sizes))
 

@@ -26,7 +26,7 @@ from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
-from .driver import Depths, Pairs
+from .driver import Depths, Pairs, depths_of
 from .kernel import common_parameters, critical_depth
 from .rules import RULES
 from .table_kernels import TABLE_KERNELS
@@ -203,7 +203,7 @@ class TableLaw(ContactLaw):
 
     def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
-        c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
+        c, d = self._table(pair).curve, depths_of(depth)
         x = np.log(np.maximum(d / pair.R, 1e-300))
         return np.where(d > 0.0, np.interp(x, np.log(c.depth), c.share), pair.elastic_share)
 
@@ -213,7 +213,7 @@ class TableLaw(ContactLaw):
         Dent and energy of recovery, which the levels were not compared in, are off by as much as
         force and radius together.
         """
-        c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
+        c, d = self._table(pair).curve, depths_of(depth)
         x = np.log(np.maximum(d / pair.R, 1e-300))
         force, radius, share = (
             np.maximum(np.interp(x, np.log(c.depth), v), LEAST)
@@ -225,7 +225,7 @@ class TableLaw(ContactLaw):
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
         """Warn with `DomainWarning` beyond the deepest recorded depth."""
         pairs = [pair] if isinstance(pair, Pair) else list(pair)
-        deepest = float(np.max(np.asarray(depth, dtype=float), initial=0.0))
+        deepest = float(np.max(depths_of(depth), initial=0.0))
         for one in pairs:
             last = float(self._table(one).curve.depth[-1])
             if deepest > last * one.R * (1.0 + 1e-9):

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
+from ..core.inputs.input_file import path_of
 from ..core.inputs.templates import KINDS, template
 from ..core.inputs.toml_input import read_toml
 from ..core.material import Material, Pair
@@ -28,6 +29,7 @@ Laws = str | ContactLaw | Sequence[str | ContactLaw]
 
 _KEYS = {"speed": "impact_speed_m_s", "mass": "mass_kg"}
 _ARRIVALS = ("impact_speed_m_s", "drop_height_m")
+_SETUPS = f"a pair, a set-up file, or {', '.join(KINDS)}"
 _NO_NUMBERS = ("striker", "support", "finite_tip")
 
 
@@ -66,14 +68,10 @@ def impact(
         Vibrations of a rod that are simulated, and their damping.
     support, support_damping_N_s_m
         How the flat rests; the damping is of a sprung one.
-    finite_tip
-        Whether the curvature of a rod's tip ends at its shank.
-    repeats
-        Blows on the same spot.
-    flight_s, max_steps, max_contacts
-        Flight between two touches, steps and touches after which it is given up.
-    temperature_K
-        Of the bodies, for a file with thermal softening.
+    finite_tip, repeats
+        Whether the curvature of a rod's tip ends at its shank; blows on the same spot.
+    flight_s, max_steps, max_contacts, temperature_K
+        Longest flight between two touches, steps and touches at most; of the bodies.
 
     Returns
     -------
@@ -176,10 +174,10 @@ def _chosen(
     mass = stated.pop("mass_kg", None)
     if isinstance(setup, Pair):
         content = _content(setup, mass)
-    elif setup in KINDS:
-        content = tomllib.loads(template(str(setup)))
+    elif isinstance(setup, str) and setup in KINDS:
+        content = tomllib.loads(template(setup))
     else:
-        content = read_toml(Path(setup))
+        content = read_toml(path_of(setup, key="setup", allowed=_SETUPS))
     section = {**content.get("impact", {}), **stated}
     # speed and height exclude each other: what is asked for goes before what the file says
     if len(arrivals := stated.keys() & _ARRIVALS) == 1:

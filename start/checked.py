@@ -12,10 +12,10 @@ from pydantic import TypeAdapter, ValidationError
 from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
 from ..core.flow import Flow, FlowCurve, tabulated
+from ..core.inputs.materials import entry_named
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.materials import entry_named
 from ..core.rig import STRAINS, STRENGTHS, MaterialTable, Quantity, Radius
 from .case_file import read_flow_curve
 
@@ -168,6 +168,8 @@ Material = CheckedMaterial
 """The name that `dentscope` gives it."""
 Pair = CheckedPair
 """Likewise."""
+for _named in (Material, Pair):
+    _named.__name__ = _named.__name__.removeprefix("Checked")  # as `help` tells it
 
 
 def material(name: str) -> Material:

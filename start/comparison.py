@@ -13,6 +13,7 @@ import numpy as np
 
 from ..core.arrays import one_number
 from ..core.errors import InputError
+from ..core.inputs.input_file import path_of
 from ..core.material import Pair
 from ..core.output import figure
 from ..core.tables import frame, html_table, text_table
@@ -179,7 +180,7 @@ def compare_laws(
     if max_delta_over_R is not None:
         max_delta_over_R = one_number(max_delta_over_R, key="max_delta_over_R")
     if not isinstance(pair, Pair):
-        content, pair = read_pair(Path(pair))
+        content, pair = read_pair(path_of(pair, key="pair", allowed="a pair, or CASE.toml"))
         last = content.load.max_delta_over_R
     last = last if max_delta_over_R is None else max_delta_over_R
     if not 1e-12 <= last <= 0.5:

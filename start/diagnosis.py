@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..core.inputs.input_file import path_of
 from ..core.observables import OBSERVABLES
 from ..core.tables import frame, html_table
 from ..discrepancy import Mechanism, Verdict
@@ -131,7 +132,9 @@ def diagnose(
     InputErrors
         One line for each mistake in the set.
     """
-    verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm,
-                         law=law, cautious=cautious, assume=assume,
-                         mechanisms=mechanisms)  # fmt: skip
+    place = path_of(folder, key="folder", allowed="a recording set")
+    verdict = verdict_of(
+        read(set_folder(place)), seed=seed, confirm=confirm, law=law, cautious=cautious,
+        assume=assume, mechanisms=mechanisms,
+    )  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

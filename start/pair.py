@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from .. import fem
+from ..core.arrays import numbers, one_number
+from ..core.inputs.input_file import path_of
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Pair
 from ..core.output import figure
@@ -153,14 +155,14 @@ def case(
     rubs, source = FrictionTable(), "case"
     if not isinstance(pair, Pair):
         source = str(pair)
-        content, pair = read_pair(Path(pair))
+        content, pair = read_pair(path_of(pair, key="pair", allowed="a pair, or CASE.toml"))
         load, rubs = content.load.model_dump(exclude_unset=True), content.friction
         level = level or content.accuracy.level
-    given = {
-        "max_delta_over_R": max_delta_over_R, "unload_from": tuple(unload_from) or None,
-        "speed_m_s": speed_m_s,
-    }  # fmt: skip
-    load |= {key: value for key, value in given.items() if value is not None}
+    given = {"max_delta_over_R": max_delta_over_R, "speed_m_s": speed_m_s}
+    load |= {k: one_number(x, key=k, source=source) for k, x in given.items() if x is not None}
+    back = numbers(unload_from, key="unload_from", allowed="numbers", source=source).ravel()
+    if len(back):
+        load["unload_from"] = back.tolist()
     if friction is not None:
         rubs = parse_model({"coefficient": friction}, FrictionTable, source=source)
     problem, accuracy = case_of(

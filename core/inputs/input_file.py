@@ -44,6 +44,19 @@ def checked_file(path: Path, *, most: int, allowed: str) -> Path:
     return path
 
 
+def path_of(given: object, *, key: str, allowed: str) -> Path:
+    """Return what a program gave as a path.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    if not isinstance(given, str | os.PathLike):
+        raise InputError(repr(given), key=key, allowed=allowed)
+    return Path(given)
+
+
 def file_beside(source: str | Path, name: str, *, key: str) -> Path:
     """Return the file that a key of another one names, from that one's folder.
 

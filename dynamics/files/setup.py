@@ -139,6 +139,9 @@ class Setup:
     pair: Pair | None = None
     """In place of the file's two bodies."""
 
+    def __repr__(self) -> str:
+        return f"Setup({self.name!r}, of {self.source}, by {', '.join(self.laws)})"
+
     def plain(self, law: ContactLaw) -> Scene:
         """Return the scene of one law."""
         found = scene_in(self.file, self.numbers, law, source=self.source)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
-from ...core.materials import materials, unlisted
+from ...core.inputs.materials import materials, unlisted
 from ...core.rig import TABOR, Quantity, value_of
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow

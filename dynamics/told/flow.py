@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from ...core.materials import Entry, materials
+from ...core.inputs.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
 from ...models.choose import follows_flow
 from ...models.hardening import REPRESENTATIVE

@@ -14,7 +14,7 @@ import shutil
 from pathlib import Path
 
 from dentscope.cli.shared.keys import FILES, keys_of
-from dentscope.core.materials import materials
+from dentscope.core.inputs.materials import materials
 from dentscope.models import LAWS, UNAVAILABLE
 from dentscope.models.export.sources import NAME, javascript_source
 from dentscope.start import material

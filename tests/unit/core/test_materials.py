@@ -3,8 +3,8 @@
 import dentscope as ds
 import pytest
 from dentscope.core.errors import InputError
+from dentscope.core.inputs.materials import filled, materials, sources
 from dentscope.core.inputs.toml_input import parse_model
-from dentscope.core.materials import filled, materials, sources
 from dentscope.core.rig import BodyTable, Rig
 from dentscope.start.case_file import HardeningTable, RateTable
 

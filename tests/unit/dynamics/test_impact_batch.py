@@ -122,7 +122,7 @@ def test_columns_have_the_names_of_trials_and_go_to_files(tmp_path: Path) -> Non
     pd = pytest.importorskip("pandas")
     found.to_parquet(tmp_path / "a.parquet")
     frame = pd.read_parquet(tmp_path / "a.parquet")
-    assert list(frame.columns) == list(found.columns) == list(found.to_frame().columns)
+    assert list(frame.columns) == list(found.columns) == list(found.frame().columns)
     assert frame["peak_force_N"].tolist() == found["peak_force_N"].tolist()
 
 

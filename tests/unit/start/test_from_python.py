@@ -14,6 +14,7 @@ import dentscope as ds
 import numpy as np
 import pandas
 import pytest
+from dentscope import dynamics
 from dentscope.core import InputError
 from dentscope.core.flow import Flow, tabulated
 from dentscope.core.inputs.templates import template
@@ -216,11 +217,16 @@ def test_a_number_is_one_number_and_what_is_none_is_named(wrong):
         "E_Pa": lambda: ds.Material(E=wrong, nu=0.3),
         "R": lambda: ds.Pair(steel, steel, R=wrong),
         "max_delta_over_R": lambda: ds.compare_laws("nowhere.toml", max_delta_over_R=wrong),
+        "speed_m_s": lambda: ds.case(ds.Pair(steel, steel, R=0.01), speed_m_s=wrong),
+        "seed": lambda: ds.diagnose("leeb-steel-800hv", seed=wrong),
+        "mass_kg": lambda: dynamics.Striker(mass=wrong, tip_radius=0.01),
+        "impact_speed_m_s": lambda: dynamics.Approach(wrong),
     }
     if np.ndim(wrong) == 0:
         calls |= {
             "depth": lambda: ds.LAWS["fitted"].loading(ds.Pair(steel, steel, 0.01), wrong),
             "angle_deg": lambda: ds.sweep("ball", angle_deg=wrong),
+            "setup": lambda: ds.impact(3.0),
         }
     for key, call in calls.items():
         with pytest.raises(InputError, match=rf"\b{key}: "):

@@ -26,6 +26,15 @@ def test_draws_have_the_bounds_that_the_verdict_tells(verdict) -> None:
         assert high == pytest.approx(told["high"], abs=0.1 * wide), name
 
 
+def test_what_is_shown_is_a_screen(verdict) -> None:
+    told = repr(verdict).splitlines()
+    assert told[0].split() == ["kharaz-2001-oblique:", "missing-physics", "probability"]
+    assert told[1].split() == ["tangential-compliance", "0.96"]
+    rows = repr(verdict.samples(100)).splitlines()
+    assert len(rows) == 1 + len(verdict.parameters)
+    assert all(len(line) < 100 for line in (*told, *rows))
+
+
 def test_what_is_read_again_scatters_about_what_was_read(verdict) -> None:
     """As wide as posterior and noise together: never narrower than the noise of the means."""
     found, cells = verdict.samples(2000), verdict.problem.cells

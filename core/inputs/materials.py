@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .errors import InputError
+from ..errors import InputError
 
-FOLDER = Path(__file__).resolve().parents[1] / "data" / "materials"
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "materials"
 
 NUMBERS = ("E_Pa", "nu", "Sy_Pa", "hardness_Pa", "density_kg_m3")
 """Keys of a body's table that an entry may give."""
@@ -95,6 +95,8 @@ def entry_named(name: str) -> Entry:
         No entry has this name; the nearest ones are told.
     """
     known = materials()
+    if not isinstance(name, str):
+        raise InputError(repr(name), key="material", allowed="a name of dentscope materials")
     if name in known:
         return known[name]
     raise InputError(f"no material {name!r}", key="material", allowed=_instead_of(name, 0.5))
