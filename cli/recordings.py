@@ -75,6 +75,9 @@ def new(
         Path | None,
         typer.Option("--from", metavar="SHEET", help="A laboratory's sheet: XLSX, ODS, CSV."),
     ] = None,
+    of_book: Annotated[
+        str, typer.Option("--sheet", help="Name of a workbook's sheet; default: the first.")
+    ] = "",
     column: Annotated[
         list[str] | None,
         typer.Option(metavar="HEADER=QUANTITY UNIT", help="What a header of the sheet means."),
@@ -87,18 +90,26 @@ def new(
 
     From a sheet with a row a drop the rows are taken over; what became of each column is told.
     """
+    from ..core.errors import InputError
     from ..recordings.template import write_template
 
     if sheet is not None:
-        _new_from(sheet, folder, column or [], sphere=sphere, dry_run=dry_run)
+        words = column or []
+        _new_from(sheet, folder, words, of_book=of_book, sphere=sphere, dry_run=dry_run)
         return
+    if column or dry_run or of_book:
+        raise InputError(
+            "--column, --dry-run and --sheet are of a sheet", source="command line", key="--from",
+            allowed="--from SHEET beside them",
+        )  # fmt: skip
     write_template(folder, shape="sphere" if sphere else "rod")
     typer.echo(f"{folder}: fill in set.toml and trials.csv, then: dentscope recordings check")
 
 
 def _new_from(
-    sheet: Path, folder: Path, columns: list[str], *, sphere: bool | None, dry_run: bool
-) -> None:
+    sheet: Path, folder: Path, columns: list[str], *, of_book: str, sphere: bool | None,
+    dry_run: bool,
+) -> None:  # fmt: skip
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
     from ..core.errors import InputError
     from ..reduce.output.into_set import store
@@ -110,7 +121,7 @@ def _new_from(
             raise InputError(
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
-    found = read_sheet(sheet, columns)
+    found = read_sheet(sheet, columns, sheet=of_book)
     shape = found.shape if sphere is None else "sphere" if sphere else "rod"
     notes = list(found.left_out)
     if not dry_run:

@@ -37,6 +37,8 @@ _TYPED = str.maketrans({
 """Signs of typesetters as they are typed: the minus, blanks that do not break, wide letters."""
 _CODINGS = ("cp1250", "gb18030", "cp932")
 """Of old spreadsheets, beside Latin: Polish, Chinese, Japanese."""
+# limit: lines by which encoding and separator are chosen [-]: headers, and numbers below them
+_LINES = 100
 
 
 @dataclass(frozen=True)
@@ -159,7 +161,7 @@ def _place(head: Head, name: str, source: str, key: str) -> int:
 def _of_book(
     path: Path, given: Mapping[str, str], sheet: str
 ) -> tuple[list[list[str]], Head, list[str]]:
-    """SheetRows and headers of the sheet of a workbook, and a line for each of the others."""
+    """Rows and headers of the sheet of a workbook, and a line for each of the others."""
     found = confined(rows_of_sheets, path, source=str(path))
     sheets = {k: _typed(rows) for k, rows in found.items() if any(map(any, rows))}
     if sheet and sheet not in sheets:
@@ -191,12 +193,15 @@ def _of_text(
     texts = [decoded(raw, source)]
     if not raw.startswith((b"\xff\xfe", b"\xfe\xff")) and not _is_utf8(raw):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
-    split = [
-        (between, _typed(rows))
-        for text in texts for one in ("", ";", "\t", ",")
-        for between, rows in [cells_of(text.splitlines(keepends=True), source, separator=one)]
+    every = [text.splitlines(keepends=True) for text in texts]
+    tried = [
+        (lines, between, head_of(_typed(rows), given).known)
+        for lines in every for one in ("", ";", "\t", ",")
+        for between, rows in [cells_of(lines[:_LINES], source, separator=one)]
     ]  # fmt: skip
-    return max(((b, rows, head_of(rows, given)) for b, rows in split), key=lambda all: all[2].known)
+    lines, between, _ = max(tried, key=lambda one: one[2])
+    rows = _typed(cells_of(lines, source, separator=between)[1])
+    return between, rows, head_of(rows, given)
 
 
 def _is_utf8(raw: bytes) -> bool:

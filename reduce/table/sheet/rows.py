@@ -22,7 +22,7 @@ _VARIED = ("temperature_K", "angle_deg")
 
 @dataclass(frozen=True)
 class SheetRows:
-    """SheetRows below headers.
+    """Rows below headers.
 
     Parameters
     ----------
@@ -225,7 +225,8 @@ def _check_columns(
 
 def _aside(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
     """Why a row is none of measured numbers: headers stand in it, or it sums up others."""
-    again = {place: kind for place, kind in enumerate(map(kind_of, row)) if kind is not None}
+    words = [cell if not cell[:1].isdigit() else "" for cell in row]
+    again = {place: kind for place, kind in enumerate(map(kind_of, words)) if kind is not None}
     if sum(kind.quantity != "text" for kind in again.values()) > 1:
         if all(again.get(c.place) == c.kind for c in columns if not c.spread):
             return ": left out, the headers once more"

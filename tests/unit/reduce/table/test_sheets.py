@@ -392,6 +392,8 @@ def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tm
     found = read_sheet(tmp_path / "a.xlsx")
     assert [t.label for t in found.trials] == ["003"]
     assert [line.split(":")[0] for line in found.left_out] == ["sheet 'Sheet'", "sheet 'Steel'"]
+    assert "--sheet 'Steel' takes it" in found.left_out[1]
+    assert "--sheet 'Brass' takes it" in read_sheet(tmp_path / "a.xlsx", sheet="Steel").left_out[1]
 
 
 def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
