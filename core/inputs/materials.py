@@ -103,12 +103,12 @@ def entry_named(name: str) -> Entry:
 
 
 def _near(name: str, likeness: float) -> list[str]:
-    found = [one.name for one in materials().values() if one.has(name)]
-    return found[:3] or get_close_matches(name.lower(), materials(), n=3, cutoff=likeness)
+    return get_close_matches(name.lower(), materials(), n=3, cutoff=likeness)
 
 
 def _instead_of(name: str, likeness: float) -> str:
-    near = _near(name, likeness)
+    near = [one.name for one in materials().values() if name and one.has(name)]
+    near = near[:3] or _near(name, likeness)
     if near:
         return f"{', '.join(near)}; all of them: dentscope materials"
     return "a name that dentscope materials lists"
