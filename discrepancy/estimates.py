@@ -175,15 +175,15 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
         # what goes into one of them may come out of another
         f"{words} {100 * max(misfit[key], 0.0):.0f} %"
         for key, words in (
-            ("sheet", "errors of the data sheet"), ("metal", "the metal not being the law's"),
-            ("law", "the law not being the finite elements"), ("rest", "none of these"),
+            ("sheet", "errors of the data sheet would explain"), ("metal", "a real metal"),
+            ("law", "finite elements of the pair"), ("rest", "none of these"),
         )
     )  # fmt: skip
     return (
         f"how far the contact law '{problem.law_name}' may be off: {sizes}; the recordings ask for "
         f"{misfit['error_size']:.2g} times as much",
-        f"with every input as stated, the squared misses of {misfit['numbers']:.0f} numbers, in "
-        f"standard deviations, add up to {misfit['as_stated']:.0f}; put down to: {took}",
+        f"with every input as stated the misfit is chi2 = {misfit['as_stated']:.0f} "
+        f"({misfit['numbers']:.0f} numbers); of it {took}",
     )
 
 

@@ -163,20 +163,20 @@ def _read() -> tuple[tuple[int, Pair, Left, dict[Body, Array]], ...]:
         The published cases are missing or damaged.
     """
     found: list[tuple[int, Pair, Left, dict[Body, Array]]] = []
-    numbers: dict[str, int] = {}
+    numbers: dict[Pair, int] = {}
     for path in published_parts():
         found += _of_part(path, numbers)
     return tuple(found)
 
 
 def _of_part(
-    path: Path, numbers: dict[str, int]
+    path: Path, numbers: dict[Pair, int]
 ) -> list[tuple[int, Pair, Left, dict[Body, Array]]]:
     out = []
     with opened_part(path) as file:
         told = [json.loads(text) for text in texts_of(file, "specification")]
         pairs = [Case.from_specification(one).pair for one in told]
-        number = [numbers.setdefault(repr(pair), len(numbers)) for pair in pairs]
+        number = [numbers.setdefault(pair, len(numbers)) for pair in pairs]
         table = {k: read_array(file["unloadings"][k]) for k in file["unloadings"]}
         curve = file["unloading_curves"]
         first = np.searchsorted(read_array(curve["unloading"]), np.arange(len(table["case"])))

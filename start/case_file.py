@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -18,6 +18,9 @@ from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_o
 
 if TYPE_CHECKING:
     from ..fem import Accuracy, ContactProblem
+
+Level = Literal["production", "quick", "smoke"]
+"""How finely a pair is solved; smoke is coarse, for a first look."""
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
@@ -96,7 +99,7 @@ class LoadTable(InputTable):
 
 
 class _Accuracy(InputTable):
-    level: Literal["production", "quick", "smoke"] = "quick"
+    level: Level = "quick"
     """How finely it is solved; smoke is coarse, for a first look."""
 
 
@@ -242,31 +245,19 @@ def case_of(
     for depth in unload:
         if not first < depth <= last:
             raise InputError(
-                f"{depth:g}",
-                source=source,
-                key="load.unload_from",
+                f"{depth:g}", source=source, key="load.unload_from",
                 allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
-            )
+            )  # fmt: skip
     depths = fem.geometric_depths(first, last, 60)
     try:
         problem = fem.ContactProblem(
-            pair=pair,
-            depths=depths,
-            unload_from=unload,
-            speeds=load.speeds,
-            friction=friction,
-            snapshots=(last,),
-            profiles=tuple(depths[k] for k in range(5, 60, 6)),
-        )
+            pair=pair, depths=depths, unload_from=unload, speeds=load.speeds, friction=friction,
+            snapshots=(last,), profiles=tuple(depths[k] for k in range(5, 60, 6)),
+        )  # fmt: skip
     except InputError as error:
         raise InputError(
             error.message, source=source, key=f"load.{error.key}", allowed=error.allowed
         ) from None
-    levels = {
-        "production": fem.Accuracy.production,
-        "quick": fem.Accuracy.quick,
-        "smoke": fem.Accuracy.smoke,
-    }
-    if level not in levels:
-        raise InputError(repr(level), key="level", allowed=", ".join(levels))
-    return problem, levels[level]()
+    if level not in (known := get_args(Level)):
+        raise InputError(repr(level), key="level", allowed=", ".join(known))
+    return problem, getattr(fem.Accuracy, level)()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from .. import fem
 from ..core.arrays import numbers, one_number
@@ -15,7 +15,7 @@ from ..core.material import Pair
 from ..core.output import figure
 from ..core.rig import FrictionTable, value_of
 from ..core.tables import frame, html_table, text_table
-from .case_file import LoadTable, case_of, read_pair
+from .case_file import Level, LoadTable, case_of, read_pair
 from .measured import MeasuredContact, measured
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class Solved:
 def case(
     pair: Pair | str | Path,
     *,
-    level: Literal["smoke", "quick", "production"] | None = None,
+    level: Level | None = None,
     max_delta_over_R: float | None = None,
     unload_from: Sequence[float] = (),
     speed_m_s: float | None = None,

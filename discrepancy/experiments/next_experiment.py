@@ -72,15 +72,9 @@ class Proposal:
         """What it would tell, in words."""
         found = []
         apart = math.sqrt(max(self.expected_discrimination, 0.0))
-        if apart >= RULES.decides:
-            found.append(
-                f"what is still confounded would lie about {apart:.1f} standard deviations apart"
-            )
-        elif apart > 0.0:
-            found.append(
-                "once will not decide: what is still confounded would lie only "
-                f"{apart:.1g} standard deviations apart"
-            )
+        differ = f"the explanations would then differ by {apart:.2g} standard deviations"
+        if apart > 0.0:
+            found.append(differ if apart >= RULES.decides else f"once will not decide: {differ}")
         if math.isfinite(self.interval):
             found.append(f"the interval would be {self.interval:.2g} times as wide as now")
         return tuple(found)

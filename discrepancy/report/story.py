@@ -167,11 +167,11 @@ def _summary(v: Verdict) -> str:
     p = v.problem
     trials = sum(len(c.trials) for c in p.conditions)
     seen = joined([OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable)])
-    metal = "elastic bodies" if p.law_name == "hertz" else "a metal that knows no rate"
+    rate = "" if p.law_name == "hertz" else ", or rate of the metal"
     return (
         f"{counted(trials, 'trial')} at {counted(len(p.conditions), 'condition')}, "
         f"{counted(len(p.cells), 'number')} ({seen}), "
-        f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law_name})."
+        f"compared with a simulation without vibration{rate} (contact law: {p.law_name})."
     )
 
 

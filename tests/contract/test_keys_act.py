@@ -6,6 +6,7 @@ one line.
 """
 
 import tomllib
+from dataclasses import asdict
 
 import pytest
 import tomlkit
@@ -366,7 +367,8 @@ def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_p
         file = tmp_path / "ball.toml"
         file.write_text(tomlkit.dumps(content))
         try:
-            told.append(repr(read_ball(file)))
+            ball = read_ball(file)
+            told.append(repr((ball, asdict(ball.pair))))
         except InputError as error:
             told.append(str(error))
     refused = "a rod" in told[0] or "a second sphere" in told[0]

@@ -6,6 +6,7 @@ leaves aside. Of an inverse file: on a number that is printed or written.
 
 import copy
 import tomllib
+from dataclasses import asdict
 
 import pytest
 import tomlkit
@@ -70,7 +71,7 @@ def of_a_case(content, folder):
     file = folder / "CASE.toml"
     file.write_text(tomlkit.dumps(content))
     problem, accuracy = read_case(file)
-    return repr(problem), repr(accuracy), repr(read_pair(file)[0].ball_mass), file
+    return repr(asdict(problem)), repr(accuracy), repr(read_pair(file)[0].ball_mass), file
 
 
 @pytest.mark.parametrize("key", keys_of("case"), ids=lambda k: f"{k.table}{k.name}")
