@@ -80,8 +80,7 @@ def diagnose(
 
     place = set_folder(folder)
     recordings = read(place)
-    # a folder for each set: no report of another one is overwritten
-    out = out or writable_folder(_OUT / place.resolve().name, key="--out")
+    out = out or writable_folder(report_folder(place), key="--out")
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import lines
 
@@ -99,6 +98,18 @@ def diagnose(
     if solve:
         written += _solved(verdict, out, show)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
+
+
+def report_folder(place: Path) -> Path:
+    """Return a folder for the set of this place alone, so that no other's report is lost."""
+    from ..recordings.shipped import FOLDER
+
+    place, here = place.resolve(), Path.cwd()
+    if place.parent == FOLDER or place == here:
+        return _OUT / place.name
+    if place.is_relative_to(here):
+        return _OUT / place.relative_to(here)
+    return _OUT / "elsewhere" / place.relative_to(place.anchor)
 
 
 def _progress(*, quiet: bool) -> Callable[[str], None]:

@@ -13,12 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dentscope.cli.diagnose import report_folder
 from dentscope.core import InputError
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
+from dentscope.recordings.shipped import FOLDER
 from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
 
@@ -118,6 +120,16 @@ def test_a_soft_surface_has_no_name_but_the_report_says_what_it_is_like(tmp_path
     assert "nothing that dentscope knows" not in finding
     assert "softer-surface" not in {*verdict.inclusion, *verdict.probabilities, *verdict.excluded}
     assert math.isclose(sum(verdict.probabilities.values()), 1.0, rel_tol=1e-6)
+
+
+def test_each_set_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    places = [Path(name) for name in ("a/set", "b/set", "a", ".", "/a/set", "/b/set")]
+    found = [report_folder(place) for place in (*places, FOLDER / "leeb-steel-800hv")]
+    assert len(set(found)) == len(found)
+    assert all(one.parts[:2] == ("build", "diagnose") for one in found)
+    assert found[0] == Path("build/diagnose/a/set")
+    assert found[-1] == Path("build/diagnose/leeb-steel-800hv")
 
 
 def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:
