@@ -24,6 +24,7 @@ from .kinds import (
 from .words import APPROACHES, FROM_NORMAL, LATER, REBOUNDS, UNDERSTOOD, SheetKind, bare, letters
 
 NOT_UNDERSTOOD = "left out: not understood"
+ABOVE = "row {}, left out: above the headers"
 _NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*(\D{0,6}|(±|\+/?-).*)")
 _NAME = re.compile(r"[^\W\d_]\S{0,9}\d+")
 """Such as A1, K-17: letters and a number."""
@@ -217,7 +218,7 @@ def columns_of(
             allowed="; ".join([usual, *filter(None, asked)][:4]),
         )  # fmt: skip
     told = [
-        (" ".join(dict.fromkeys(filter(None, row))), f"row {k}, left out: above the headers")
+        (" ".join(dict.fromkeys(filter(None, row))), ABOVE.format(k))
         for k, row in enumerate(rows[: head.first], start=1) if any(row)
     ]  # fmt: skip
     columns: list[SheetColumn] = []

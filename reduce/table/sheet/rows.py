@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 from ....core.errors import InputError, InputErrors
@@ -12,8 +14,8 @@ from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
 from ...shared.units import UNITS
 from .cell import number_in, why_not
-from .headers import NOT_UNDERSTOOD, SheetColumn
-from .kinds import SUMMARY, SUMS, kind_of
+from .headers import ABOVE, NOT_UNDERSTOOD, SheetColumn
+from .kinds import SUMMARY, SUMS, kind_of, unit_of
 from .trial import Readings, became, mean_of, naming_of, note_of, restitutions_of, scatter_of
 from .words import APPROACHES, BALL_DIAMETER, BALL_MASS, BODY, REBOUNDS, UNDERSTOOD, bare
 
@@ -78,6 +80,8 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     """
     rows, columns, found = sheet.rows, sheet.columns, _SoFar()
     _check_columns(columns, told, sheet.source)
+    used = _above(sheet, found.body)
+    told = [(header, used.get(became, became)) for header, became in told]
     for k, row in enumerate(rows[sheet.top :], start=sheet.top + 1):
         aside = _aside(row, columns)
         if aside:
@@ -111,6 +115,21 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     own = [(c.header, became(c, columns, found.used, striker, naming)) for c in columns]
     lines = _lines(found, columns, [*stds], told)
     return Taken(tuple(named), (*own, *told), (*found.left, *lines), striker)
+
+
+def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
+    """Add the ball's size and mass in lines above the headers; return what these lines became."""
+    used = {}
+    for k, row in enumerate(sheet.rows[: sheet.top], start=1):
+        parts = [part for cell in row for part in re.split(r"\s*[:=]\s*|\s+(?=\d)", cell) if part]
+        for name, said in pairwise(parts):
+            kind = kind_of(name)
+            if kind is not None and kind.name in BODY:
+                column = SheetColumn(0, name, kind, unit_of(name, kind))
+                if value := number_in(said, column, sheet.decimals):
+                    body.setdefault(kind.name, set()).add(value)
+                    used[ABOVE.format(k)] = f"row {k}: {kind.said} {said}, the striker's"
+    return used
 
 
 def _take(row: Sequence[str], k: int, sheet: SheetRows, so_far: _SoFar) -> None:

@@ -500,6 +500,15 @@ def test_a_ball_that_is_the_same_in_all_rows_is_that_of_the_set(tmp_path, head, 
     assert made.setup.strikers["ball"].mass_kg.value == pytest.approx(4.08e-3)
 
 
+def test_a_ball_above_the_headers_is_that_of_the_set(tmp_path):
+    text = "Kugel Ø 10,5 mm;Messing\nKugelmasse:;4,08 g;\n\nFallhöhe (cm);e\n10;0,6\n20;0,5\n"
+    sheet = read_text(tmp_path, text)
+    assert {k: v.value for k, v in sheet.striker.items()} == pytest.approx(
+        {"tip_radius_m": 5.25e-3, "mass_kg": 4.08e-3}
+    )
+    assert columns(sheet)["Kugelmasse: 4,08 g"] == "row 2: ball mass 4,08 g, the striker's"
+
+
 def test_balls_that_differ_are_told(tmp_path):
     text = "drop height (cm),e,Ball diameter (mm)\n10,0.6,10\n20,0.5,12\n"
     sheet = read_text(tmp_path, text)
