@@ -1,4 +1,4 @@
-"""Words of laboratories' sheets for what there is, in ten languages, and nothing else.
+"""Words of laboratories' sheets for what there is, in nine languages, and nothing else.
 
 English, German, French, Spanish, Italian, Portuguese, Polish, Chinese, Japanese; stems, as regular
 expressions. Letters are compared small and without accents (`bare`): `oe?` is ö or oe.
@@ -57,7 +57,7 @@ _SINK = r"indent|eindring|penetr|press"
 _MASS = r"mass|masa|weight|gewicht|poids|peso|ciezar|质量|質量|重量"
 _BLOW = r"contact|kontakt|stoss|impact|beruhr|contatto|contat|zderz|uderz|接触|碰撞|衝突"
 _TIME = r"time|duration|zeit|dauer|temps|duree|tempo|tiempo|durat|durac|czas|时间|時間"
-_MOST = r"peak|max|massim|maks|spitze|pico|picco|szczyt|stoss|impact|最大|峰值|衝撃|冲击"
+_MOST = r"peak|max|massim|maks|spitze|crete|pico|picco|szczyt|stoss|impact|最大|峰值|衝撃|冲击"
 _FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
 _SPIN = r"\bspin\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
 
@@ -80,7 +80,10 @@ LATER = (
     r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
     r"segund[oa]|tercer\w*|drugi\w*|trzeci\w*)\b|第[二三四2-4]"
 )
-FROM_NORMAL = r"(from|to)( the)? (normal|vertical)|\blot\b|senkrecht"
+FROM_NORMAL = (
+    r"(from|to)( the)? (normal|vertical)|\blot\b|senkrecht|incidence|einfall|incidenza|incidencia|"
+    r"padania|入射角"
+)
 ALONG = r"tangent|tangenc|horizont|styczn|切向|接線|水平"
 RANGE = r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd|zakres)\b"
 ROD = r"\b(rod|stab|stange|barre|tige|barra|asta|varilla|haste|pret)\b|棒"
@@ -148,8 +151,8 @@ KINDS = (
         (r"operator|observer|experimenter|student|(measured|tested|done) by|prue?fer|bediener|"
          r"bearbeiter|operateur|operatrice|operatore|operari|operador|wykonal|badajac|"
          r"操作[员者]|试验员|测试人|測定者|担当|試験者",)),
-    SheetKind("temperature_K", "temperature", ("temperatur|温度",), r"^t$"),
-    SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角度",),
+    SheetKind("temperature_K", "temperature", ("temperatur|温度|室温",), r"^t$"),
+    SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)",),
         never=f"{REBOUND}|contact|kontakt|tilt|neigung"),
     SheetKind("restitution", "number",
         ("restitu[tczi]|restytuc|stoss?zahl|stossziffer|恢复系数|反発係数|はね返り係数",),
@@ -175,8 +178,9 @@ KINDS = (
         rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}"),
     SheetKind("peak_force_N", "force", (_MOST, _FORCE)),
     SheetKind(LOAD, "force",
-        (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|test (force|load)|"
-         "prue?f(kraft|last)|试验力|試験力",)),
+        (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|"
+         "(test|applied) (force|load)|force appliquee|fuerza aplicada|forza applicata|"
+         "forca aplicada|prue?f(kraft|last)|试验力|試験力",)),
     SheetKind(BALL_DIAMETER, "length", (_BALL, _DIAMETER)),
     SheetKind(BALL_MASS, "mass", (_BALL, _MASS)),
     SheetKind("trial", "text",

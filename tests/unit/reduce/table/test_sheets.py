@@ -315,6 +315,7 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("Fallhöhe soll (cm);Fallhöhe ist (cm);e\n10;10,3;0,6\n",
          r"Fallhöhe ist \(cm\): drop_height_m stands in 'Fallhöhe soll \(cm\)' already"),
         ("Angle from normal (deg),v (m/s),e\n0,1,0.6\n", "an angle from the normal"),
+        ("Einfallswinkel (Grad),v (m/s),e\n0,1,0.6\n", "an angle from the normal"),
         ("drop height;rebound height (mm)\n10;5\n20;9\n",
          r"drop height: the header names no unit .*allowed: m, cm"),
         ("a;b\n10;5\n20;9\n", "no row of headers is understood"),
