@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from .disk import DISK
 from .errors import InputError
+from .inputs.csv_table import inert
 from .inputs.input_file import read_bytes
 from .rules import RULES
 
@@ -186,11 +187,11 @@ def _taken(handle: int) -> bool:
 
 
 def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
-    """Return rows as comma-separated text, floats with every digit."""
+    """Return rows as comma-separated text, floats with every digit, formulas as text."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(header)
-    writer.writerows(rows)
+    writer.writerows([inert(c) if isinstance(c, str) else c for c in row] for row in rows)
     return stream.getvalue()
 
 

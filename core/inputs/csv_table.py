@@ -26,6 +26,8 @@ _TABLE_COLUMNS = 2000
 # limit: largest table that is read [bytes]: memory of a small machine
 _TABLE_BYTES = 100_000_000
 
+_FORMULA = re.compile(r"'*[=+\-@].")
+"""How a text begins that spreadsheets run, behind apostrophes or not."""
 _OF_FORTRAN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 """A number in double precision."""
 
@@ -97,7 +99,8 @@ def read_text_table(
     except csv.Error as error:
         problems.add(f"not comma-separated values ({error})", allowed="quotes closed, no NUL")
         return None
-    numbered = [(n, [c.strip() for c in line]) for n, line in enumerate(lines, 1) if any(line)]
+    each = enumerate(lines, 1)
+    numbered = [(n, [_as_meant(c.strip()) for c in line]) for n, line in each if any(line)]
     numbered = [(n, line) for n, line in numbered if any(line)]
     if not numbered:
         problems.add("empty", allowed="a header line and rows")
@@ -108,6 +111,26 @@ def read_text_table(
     if not _header_is_sound(header, header_row, names, problems):
         return None
     return _body(header, numbered[1:], names, problems)
+
+
+def inert(cell: str) -> str:
+    """Return a text behind an apostrophe where a spreadsheet would run it as a formula.
+
+    Examples
+    --------
+    >>> [inert(text) for text in ("=1+1", "-0.5", "-ok", "loose")]
+    ["'=1+1", '-0.5', "'-ok", 'loose']
+    """
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}" if _FORMULA.match(cell) else cell
+    return cell
+
+
+def _as_meant(cell: str) -> str:
+    """A text as it was before `inert`."""
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
 
 
 def _header_is_sound(

@@ -510,6 +510,17 @@ def test_a_ball_above_the_headers_is_that_of_the_set(tmp_path):
     assert columns(sheet)["Kugelmasse: 4,08 g"] == "row 2: ball mass 4,08 g, the striker's"
 
 
+def test_formulas_in_notes_are_text_in_the_set_and_come_back(tmp_path):
+    from dentscope.cli import run
+
+    (tmp_path / "a.csv").write_text("drop height (cm);e;note\n10;0,6;=1+1\n20;0,5;'-x\n30;0,5;-3\n")
+    made = tmp_path / "set"
+    assert run(["recordings", "new", str(made), "--from", str(tmp_path / "a.csv")]) == 0
+    written = (made / "trials.csv").read_text()
+    assert all(note in written for note in (",'=1+1\n", ",''-x\n", ",-3\n"))
+    assert read(made, unfinished=True).trials.note == ("=1+1", "'-x", "-3")
+
+
 def test_balls_that_differ_are_told(tmp_path):
     text = "drop height (cm),e,Ball diameter (mm)\n10,0.6,10\n20,0.5,12\n"
     sheet = read_text(tmp_path, text)
