@@ -26,7 +26,6 @@ from typing import TYPE_CHECKING, Any
 
 from .disk import DISK
 from .errors import InputError
-from .inputs.csv_table import inert
 from .inputs.input_file import read_bytes
 from .rules import RULES
 
@@ -188,6 +187,8 @@ def _taken(handle: int) -> bool:
 
 def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
     """Return rows as comma-separated text, floats with every digit, formulas as text."""
+    from .inputs.csv_table import inert
+
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(header)
