@@ -5,6 +5,9 @@ with theta the mean of J over its reference volume, the deviator is taken at eac
 points. Both derive from one potential, so the elastic tangent is symmetric; the tangent of the
 exact stress update is not, and the full matrix is assembled. The basis values, the quadrature and
 the degrees of freedom come from scikit-fem; this file only sums them up.
+
+Eight elements are taken at a time, their points in the lanes of `material.lanes`: lane 8 q + k is
+point q of element k.
 """
 
 from __future__ import annotations
@@ -15,44 +18,79 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ..core.arrays import Array
+from ..core.arrays import Array, Integers
 from ..core.unowned import unowned
-from .elements import Elements, State, gradient
-from .material import (
-    NO_LAW,
-    MaterialStep,
-    deviatoric_pk1,
-    deviatoric_tangent,
-    elastic_deviator,
-    exponential,
-    hardened,
-    law_of,
-)
-from .material.tensor import norm
+from .elements import Elements, State
+from .material import EXACT, exponential, law_of
+from .material.flow import at_point
+from .material.lanes import (
+    B0,
+    E0,
+    E1,
+    E2,
+    E3,
+    F0,
+    F1,
+    F2,
+    F3,
+    F4,
+    FAST,
+    FLOWS,
+    G2,
+    LAW,
+    O0,
+    OTHERS,
+    P0,
+    P1,
+    P2,
+    P3,
+    P4,
+    R0,
+    SLIP,
+    STRAIN,
+    TANGENT,
+    WORK,
+    WORKED,
+    L,
+    M,
+    stresses,
+    tangents,
+)  # fmt: skip
+from .material.tensor import dot
 from .rules import RULES
 
 _SMALLEST_DETERMINANT = RULES.least_determinant
 
-_KEEPS = RULES.tangent_kept
+_ELASTIC = 1e30  # radius of the yield circle of what never yields
 
 DISTORTED = -1
 """Returned by `bulk_forces` when an element has turned inside out."""
 
+_BLOCK = L // 4  # elements
+
+# rows beside those of the points: gradients of the four basis functions by r and z, their values
+# over r, volume, pressure, in-plane determinant, gradient of the volume, forces on the nodes
+_GR, _GZ, _H, _DV, _PRESSURE, _DET, _V, _FORCE, _K = (
+    OTHERS + L * k for k in (0, 4, 8, 12, 13, 14, 15, 23, 31)
+)
+# the last ones are the elements' tangents, (8, 8, elements)
+_NUMBERS = _K + 64 * _BLOCK
+
 
 class _Room(NamedTuple):
-    """Working arrays of one element, which a kernel may not own itself (`unowned`)."""
+    """Working arrays, which a kernel may not own itself (`unowned`)."""
 
-    F: Array  # deformation gradients
-    P: Array  # stress of a point
-    A: Array  # and its tangent
-    g: Array  # gradient of the element's volume
-    fe: Array  # forces on its nodes
-    curve: Array  # of a body that does not harden
+    rows: Array
+    volume: Array  # gradient of the elements' volumes, (8, elements)
+    force: Array  # on their nodes, (8, elements)
+    theta: Array  # their mean J
+    block: Integers  # their numbers
 
     @classmethod
     def new(cls) -> _Room:
-        shapes = ((4, 5), 5, (5, 5), 8, 8, (3, 0))
-        return cls(*(np.empty(shape) for shape in shapes))
+        rows, of_elements = np.zeros(_NUMBERS), np.zeros((2, 8, _BLOCK))
+        block = np.zeros(_BLOCK, np.int64)
+        return cls(rows, of_elements[0], of_elements[1], np.zeros(_BLOCK), block)
 
 
 @njit(cache=True, inline="always")
@@ -64,219 +102,263 @@ def _linear_element(nodes, K, u, force):
         force[2 * nodes[a // 2] + a % 2] += total
 
 
-@njit(cache=True, inline="always")
-def _mean_dilatation(x, u, e, F):
-    """Mean of J over element e, the deformation gradients going to `F`; -1 if turned inside out."""
-    J_sum = 0.0
-    for q in range(4):
-        gradient(x, u, e, q, F[q])
-        det = F[q, 0] * F[q, 3] - F[q, 1] * F[q, 2]
-        if not (det > _SMALLEST_DETERMINANT and F[q, 4] > _SMALLEST_DETERMINANT):
-            return -1.0
-        J_sum += det * F[q, 4] * x.dV[e, q]
-    return J_sum / x.volume[e]
+@njit(cache=True)
+def _gather(x, u, old, block, w):
+    """Fill the given rows of the points of the elements `block`, and those of the elements."""
+    for k in range(_BLOCK):
+        e = block[k]
+        law = x.law[e]
+        for q in range(4):
+            at = q * _BLOCK + k
+            f0, f1, f2, f3, f4 = 1.0, 0.0, 0.0, 1.0, 1.0
+            inverse = 1.0 / x.r[e, q]
+            for a in range(4):
+                i = 2 * x.conn[e, a]
+                gr, gz, h = x.grad[e, q, a, 0], x.grad[e, q, a, 1], x.value[q, a] * inverse
+                f0 += u[i] * gr
+                f1 += u[i] * gz
+                f2 += u[i + 1] * gr
+                f3 += u[i + 1] * gz
+                f4 += u[i] * h
+                w[_GR + a * L + at], w[_GZ + a * L + at], w[_H + a * L + at] = gr, gz, h
+            w[F0 + at], w[F1 + at], w[F2 + at], w[F3 + at], w[F4 + at] = f0, f1, f2, f3, f4
+            for i in range(5):
+                w[O0 + i * L + at] = old.F[e, q, i]
+            for i in range(4):
+                w[B0 + i * L + at] = old.b[e, q, i]
+                w[E0 + i * L + at] = old.strain[e, q, i]
+            w[_DV + at] = x.dV[e, q]
+            w[G2 + at] = 2.0 * x.G[e]
+            w[R0 + at] = min(x.radius[e], _ELASTIC)
+            w[LAW + at] = law + 1.0
+            if law >= 0:
+                strain, work = old.peeq[e, q], old.work[e, q]
+                w[STRAIN + at], w[WORK + at] = strain, work
+                here = law_of(x.laws, law, 0.0, math.inf)
+                _, w[R0 + at] = at_point(here, x.laws.curve[law], strain, work)
 
 
-@njit(cache=True, inline="always")
-def _step(x, old, rule, e, q, F):
-    # tuples of numbers: arrays in them would be counted at every call
-    G, b, s = old.F[e, q], old.b[e, q], old.strain[e, q]
-    return MaterialStep(
-        (F[0], F[1], F[2], F[3], F[4]),
-        (G[0], G[1], G[2], G[3], G[4]),
-        (b[0], b[1], b[2], b[3]),
-        (s[0], s[1], s[2], s[3]),
-        x.radius[e],
-        rule,
-        False,
-        NO_LAW,
-    )
-
-
-@njit(cache=True, inline="always")
-def _add_point_forces(x, e, q, F, P, p, g, fe):
-    """Add the forces of one point to `fe` (8,), and the gradient of its volume to `g` (8,)."""
-    c0 = F[3] * F[4]
-    c1 = -F[2] * F[4]
-    c2 = -F[1] * F[4]
-    c3 = F[0] * F[4]
-    c4 = F[0] * F[3] - F[1] * F[2]
-    w = x.dV[e, q]
-    for a in range(4):
-        gr = x.grad[e, q, a, 0] * w
-        gz = x.grad[e, q, a, 1] * w
-        h = x.value[q, a] / x.r[e, q] * w
-        v0 = c0 * gr + c1 * gz + c4 * h
-        v1 = c2 * gr + c3 * gz
-        g[2 * a] += v0
-        g[2 * a + 1] += v1
-        fe[2 * a] += P[0] * gr + P[1] * gz + P[4] * h + p * v0
-        fe[2 * a + 1] += P[2] * gr + P[3] * gz + p * v1
-
-
-@njit(cache=True, inline="always")
-def _add_point_tangent(x, e, q, F, p, A, K):
-    """Add B^T (A + p d2J/dF2) B of one point to the element tangent `K` (8, 8)."""
-    A[0, 3] += p * F[4]
-    A[3, 0] += p * F[4]
-    A[1, 2] -= p * F[4]
-    A[2, 1] -= p * F[4]
-    A[0, 4] += p * F[3]
-    A[4, 0] += p * F[3]
-    A[3, 4] += p * F[0]
-    A[4, 3] += p * F[0]
-    A[1, 4] -= p * F[2]
-    A[4, 1] -= p * F[2]
-    A[2, 4] -= p * F[1]
-    A[4, 2] -= p * F[1]
-    w = x.dV[e, q]
-    for a in range(4):
-        gr = x.grad[e, q, a, 0] * w
-        gz = x.grad[e, q, a, 1] * w
-        h = x.value[q, a] / x.r[e, q] * w
-        # rows of (r, z) at node a: the columns of the gradient, then of the hoop strain
-        r0 = gr * A[0, 0] + gz * A[1, 0] + h * A[4, 0]
-        r1 = gr * A[0, 1] + gz * A[1, 1] + h * A[4, 1]
-        r2 = gr * A[0, 2] + gz * A[1, 2] + h * A[4, 2]
-        r3 = gr * A[0, 3] + gz * A[1, 3] + h * A[4, 3]
-        r4 = gr * A[0, 4] + gz * A[1, 4] + h * A[4, 4]
-        z0 = gr * A[2, 0] + gz * A[3, 0]
-        z1 = gr * A[2, 1] + gz * A[3, 1]
-        z2 = gr * A[2, 2] + gz * A[3, 2]
-        z3 = gr * A[2, 3] + gz * A[3, 3]
-        z4 = gr * A[2, 4] + gz * A[3, 4]
-        for b in range(4):
-            br = x.grad[e, q, b, 0]
-            bz = x.grad[e, q, b, 1]
-            bh = x.value[q, b] / x.r[e, q]
-            K[2 * a, 2 * b] += r0 * br + r1 * bz + r4 * bh
-            K[2 * a, 2 * b + 1] += r2 * br + r3 * bz
-            K[2 * a + 1, 2 * b] += z0 * br + z1 * bz + z4 * bh
-            K[2 * a + 1, 2 * b + 1] += z2 * br + z3 * bz
-
-
-@njit(cache=True, inline="always")
-def _near(F, at):
-    """Whether deformation gradients (4, 5) are within `_KEEPS` of those at the kept tangent."""
-    for q in range(4):
-        for i in range(5):
-            if not abs(F[q, i] - at[q, i]) <= _KEEPS:
-                return False
-    return True
-
-
-@njit(cache=True, inline="always")
-def _clear(g, fe):
-    for i in range(8):
-        g[i] = 0.0
-        fe[i] = 0.0
-
-
-@njit(cache=True, inline="always")
-def _add_element(nodes, fe, force):
-    for a in range(4):
-        i = 2 * nodes[a]
-        force[i] += fe[2 * a]
-        force[i + 1] += fe[2 * a + 1]
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _determinants(w):
+    """Fill the row of in-plane determinants; whether no point has turned inside out."""
+    sound = 0.0
+    for at in range(L):
+        det = w[F0 + at] * w[F3 + at] - w[F1 + at] * w[F2 + at]
+        w[_DET + at] = det
+        whole = (det > _SMALLEST_DETERMINANT) & (w[F4 + at] > _SMALLEST_DETERMINANT)
+        sound += 1.0 if whole else 0.0
+    return sound == L
 
 
 @njit(cache=True)
-def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, at, room):
+def _pressures(x, block, w, theta):
+    for k in range(_BLOCK):
+        e = block[k]
+        J = 0.0
+        for at in range(k, L, _BLOCK):
+            J += w[_DET + at] * w[F4 + at] * w[_DV + at]
+        theta[k] = J / x.volume[e]
+        p = x.K[e] * math.log(theta[k]) / theta[k]
+        for at in range(k, L, _BLOCK):
+            w[_PRESSURE + at] = p
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def _node_forces(w, a):
+    """What each point adds to the volume's gradient and to the forces at node a."""
+    for at in range(L):
+        dV, p, f4 = w[_DV + at], w[_PRESSURE + at], w[F4 + at]
+        gr, gz, h = w[_GR + a * L + at] * dV, w[_GZ + a * L + at] * dV, w[_H + a * L + at] * dV
+        v0 = w[F3 + at] * f4 * gr - w[F2 + at] * f4 * gz + w[_DET + at] * h
+        v1 = w[F0 + at] * f4 * gz - w[F1 + at] * f4 * gr
+        w[_V + 2 * a * L + at], w[_V + (2 * a + 1) * L + at] = v0, v1
+        w[_FORCE + 2 * a * L + at] = w[P0 + at] * gr + w[P1 + at] * gz + w[P4 + at] * h + p * v0
+        w[_FORCE + (2 * a + 1) * L + at] = w[P2 + at] * gr + w[P3 + at] * gz + p * v1
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _forces(w):
+    _node_forces(w, 0)
+    _node_forces(w, 1)
+    _node_forces(w, 2)
+    _node_forces(w, 3)
+
+
+@njit(forceinline=True)
+def _entry(i, j):
+    """Row of dP_i/dF_j."""
+    return TANGENT + (5 * j + i) * L
+
+
+@njit(forceinline=True, fastmath=FAST)
+def _add_both(w, at, i, j, more):
+    w[_entry(i, j) + at] += more
+    w[_entry(j, i) + at] += more
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _add_pressure(w):
+    """Add p d2J/dF2."""
+    for at in range(L):
+        p = w[_PRESSURE + at]
+        _add_both(w, at, 0, 3, p * w[F4 + at])
+        _add_both(w, at, 1, 2, -p * w[F4 + at])
+        _add_both(w, at, 0, 4, p * w[F3 + at])
+        _add_both(w, at, 3, 4, p * w[F0 + at])
+        _add_both(w, at, 1, 4, -p * w[F2 + at])
+        _add_both(w, at, 2, 4, -p * w[F1 + at])
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def _by_u(w, at, i, g):
+    """Change of P_i with the displacements (r, z) of a node of the gradients (r, z, hoop) `g`."""
+    return (
+        w[_entry(i, 0) + at] * g[0] + w[_entry(i, 1) + at] * g[1] + w[_entry(i, 4) + at] * g[2],
+        w[_entry(i, 2) + at] * g[0] + w[_entry(i, 3) + at] * g[1],
+    )
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def _couple(w, a, b, at, k, A0, A1, A2, A3, A4):
+    gr, gz, h = w[_GR + a * L + at], w[_GZ + a * L + at], w[_H + a * L + at]
+    for j in range(2):
+        to = _K + (16 * a + 2 * b + j) * _BLOCK + k
+        w[to] += gr * A0[j] + gz * A1[j] + h * A4[j]
+        w[to + 8 * _BLOCK] += gr * A2[j] + gz * A3[j]
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def _node_couplings(w, b, q):
+    """Add B^T A B of point q, the columns of node b."""
+    for k in range(_BLOCK):
+        at = q * _BLOCK + k
+        dV = w[_DV + at]
+        g = (w[_GR + b * L + at] * dV, w[_GZ + b * L + at] * dV, w[_H + b * L + at] * dV)
+        A0, A1, A2 = _by_u(w, at, 0, g), _by_u(w, at, 1, g), _by_u(w, at, 2, g)
+        A3, A4 = _by_u(w, at, 3, g), _by_u(w, at, 4, g)
+        _couple(w, 0, b, at, k, A0, A1, A2, A3, A4)
+        _couple(w, 1, b, at, k, A0, A1, A2, A3, A4)
+        _couple(w, 2, b, at, k, A0, A1, A2, A3, A4)
+        _couple(w, 3, b, at, k, A0, A1, A2, A3, A4)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _couplings(w):
+    for i in range(64 * _BLOCK):
+        w[_K + i] = 0.0
+    for q in range(4):
+        _node_couplings(w, 0, q)
+        _node_couplings(w, 1, q)
+        _node_couplings(w, 2, q)
+        _node_couplings(w, 3, q)
+
+
+@njit(cache=True, fastmath=FAST)
+def _sum_points(w, first, sums):
+    """Sum eight rows over the four points of each element."""
+    for i in range(8):
+        f = first + i * L
+        for k in range(_BLOCK):
+            one = w[f + k] + w[f + _BLOCK + k]
+            sums[i, k] = one + w[f + 2 * _BLOCK + k] + w[f + 3 * _BLOCK + k]
+
+
+@njit(cache=True)
+def _put_forces(x, block, m, sums, force):
+    for k in range(m):
+        e = block[k]
+        for a in range(4):
+            i = 2 * x.conn[e, a]
+            force[i] += sums[2 * a, k]
+            force[i + 1] += sums[2 * a + 1, k]
+
+
+@njit(cache=True, error_model="numpy")
+def _put_tangents(x, block, m, theta, g, w, tangent):
+    for k in range(m):
+        e = block[k]
+        stiff = x.K[e] * (1.0 - math.log(theta[k])) / (theta[k] * theta[k] * x.volume[e])
+        T = tangent[e]
+        for i in range(8):
+            gi = stiff * g[i, k]
+            for j in range(8):
+                T[i, j] = w[_K + (8 * i + j) * _BLOCK + k] + gi * g[j, k]
+
+
+@njit(cache=True)
+def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, room):
     x, old, room = unowned(x), unowned(old), unowned(room)
-    u, force, tangent, at = unowned(u), unowned(force), unowned(tangent), unowned(at)
-    F, P, A, g, fe = room.F, room.P, room.A, room.g, room.fe
-    laws = x.laws
-    law = NO_LAW
-    curve = room.curve
-    n_plastic = 0
-    for e in range(x.conn.shape[0]):
-        if x.linear[e] >= 0:
+    u, force, tangent = unowned(u), unowned(force), unowned(tangent)
+    w, block = room.rows, room.block
+    exact = 1.0 if rule == EXACT else 0.0
+    n_plastic = 0.0
+    n, m = x.conn.shape[0], 0
+    for e in range(n + 1):
+        if e < n and x.linear[e] >= 0:
             _linear_element(x.conn[e], x.stiffness[x.linear[e]], u, force)
             if with_tangent:
                 tangent[e] = x.stiffness[x.linear[e]]
-            continue
-        theta = _mean_dilatation(x, u, e, F)
-        if theta < 0.0:
-            return DISTORTED
-        p = x.K[e] * math.log(theta) / theta
-        hard = x.law[e] >= 0
-        if hard:
-            law = law_of(laws, x.law[e], 2.0 * x.G[e], seconds)
-            curve = laws.curve[x.law[e]]
-        flowed = 0
-        if not with_tangent or _near(F, at[e]):
-            _clear(g, fe)
-            for q in range(4):
-                step = _step(x, old, rule, e, q, F[q])
-                if hard:
-                    step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
-                flowed += deviatoric_pk1(step, curve, x.G[e], P)
-                if with_tangent and flowed:
-                    break
-                _add_point_forces(x, e, q, F[q], P, p, g, fe)
-            if not (with_tangent and flowed):
-                n_plastic += flowed
-                _add_element(x.conn[e], fe, force)
-                continue
-        flowed = 0
-        _clear(g, fe)
-        tangent[e] = 0.0
-        for q in range(4):
-            step = _step(x, old, rule, e, q, F[q])
-            if hard:
-                step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
-            flowed += deviatoric_tangent(step, curve, x.G[e], P, A)
-            _add_point_forces(x, e, q, F[q], P, p, g, fe)
-            _add_point_tangent(x, e, q, F[q], p, A, tangent[e])
-        _add_element(x.conn[e], fe, force)
-        k = x.K[e] * (1.0 - math.log(theta)) / (theta * theta * x.volume[e])
-        for i in range(8):
-            for j in range(8):
-                tangent[e, i, j] += k * g[i] * g[j]
-        n_plastic += flowed
-        at[e] = F
-        if flowed:
-            at[e] = math.nan
-    return n_plastic
+        elif e < n:
+            block[m:] = e  # the last block is filled up with its last element, which counts once
+            m += 1
+        if m == _BLOCK or (e == n and m > 0):
+            _gather(x, u, old, block, w)
+            if not _determinants(w):
+                return DISTORTED
+            _pressures(x, block, w, room.theta)
+            flows = stresses(w, exact, x.laws, seconds)
+            if m < _BLOCK:
+                flows = 0.0
+                for k in range(m):
+                    for at in range(k, L, _BLOCK):
+                        flows += w[FLOWS + at]
+            n_plastic += flows
+            _forces(w)
+            _sum_points(w, _V, room.volume)
+            _sum_points(w, _FORCE, room.force)
+            _put_forces(x, block, m, room.force, force)
+            if with_tangent:
+                tangents(w)
+                _add_pressure(w)
+                _couplings(w)
+                _put_tangents(x, block, m, room.theta, room.volume, w, tangent)
+            m = 0
+    return int(n_plastic)
 
 
 @njit(cache=True)
 def _advance(x, u, old, rule, seconds, new, room):
     """Fill the arrays of the state `new`; plastic work of the step and stored energy."""
     x, u, old, new, room = unowned(x), unowned(u), unowned(old), unowned(new), unowned(room)
-    dissipated = 0.0
-    stored = 0.0
-    laws = x.laws
-    law = NO_LAW
-    curve = room.curve
-    for e in range(x.conn.shape[0]):
-        J_sum = 0.0
-        hard = x.law[e] >= 0
-        if hard:
-            law = law_of(laws, x.law[e], 2.0 * x.G[e], seconds)
-            curve = laws.curve[x.law[e]]
-        for q in range(4):
-            F = new.F[e, q]
-            gradient(x, u, e, q, F)
-            J = (F[0] * F[3] - F[1] * F[2]) * F[4]
-            J_sum += J * x.dV[e, q]
-            step = _step(x, old, rule, e, q, F)
-            if hard:
-                step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
-            done = elastic_deviator(step, curve)
-            s = done.e
-            b = exponential(s, done.mean)
-            for i in range(4):
-                new.b[e, q, i] = b[i]
-                new.strain[e, q, i] = s[i]
-            new.peeq[e, q] = old.peeq[e, q] + math.sqrt(2.0 / 3.0) * done.slip
-            work = 2.0 * x.G[e] * done.worked * done.slip
-            new.work[e, q] = old.work[e, q] + work
-            dissipated += work * x.dV[e, q]
-            size = norm(s)
-            stored += x.G[e] * size * size * x.dV[e, q]
-        log_theta = math.log(J_sum / x.volume[e])
-        stored += 0.5 * x.K[e] * log_theta * log_theta * x.volume[e]
+    w, block = room.rows, room.block
+    dissipated, stored = 0.0, 0.0
+    n = x.conn.shape[0]
+    for first in range(0, n, _BLOCK):
+        m = min(_BLOCK, n - first)
+        for k in range(_BLOCK):
+            block[k] = first + min(k, m - 1)
+        _gather(x, u, old, block, w)
+        stresses(w, 1.0 if rule == EXACT else 0.0, x.laws, seconds)
+        for k in range(m):
+            e = block[k]
+            J = 0.0
+            for q in range(4):
+                at = q * _BLOCK + k
+                for i in range(5):
+                    new.F[e, q, i] = w[F0 + i * L + at]
+                J += (w[F0 + at] * w[F3 + at] - w[F1 + at] * w[F2 + at]) * w[F4 + at] * w[_DV + at]
+                s = (w[E0 + at], w[E1 + at], w[E2 + at], w[E3 + at])
+                b = exponential(s, w[M + at])
+                for i in range(4):
+                    new.b[e, q, i] = b[i]
+                    new.strain[e, q, i] = s[i]
+                work = w[G2 + at] * w[WORKED + at] * w[SLIP + at]
+                new.peeq[e, q] = old.peeq[e, q] + math.sqrt(2.0 / 3.0) * w[SLIP + at]
+                new.work[e, q] = old.work[e, q] + work
+                dissipated += work * w[_DV + at]
+                stored += 0.5 * w[G2 + at] * dot(s, s) * w[_DV + at]
+            log_theta = math.log(J / x.volume[e])
+            stored += 0.5 * x.K[e] * log_theta * log_theta * x.volume[e]
     return dissipated, stored
 
 
@@ -288,7 +370,6 @@ def bulk_forces(
     rule: int,
     force: Array,
     tangent: Array | None = None,
-    tangent_at: Array | None = None,
     seconds: float = math.inf,
 ) -> int:
     """Add the internal forces at displacement `u` to `force`, and fill the element tangents.
@@ -309,21 +390,15 @@ def bulk_forces(
         Array that the forces are added to, shape (2 n_nodes,) [E' R^2].
     tangent
         Array for the element tangents, shape (n_elements, 8, 8) [E' R]; none: forces only.
-    tangent_at
-        Deformation gradients at which the tangents of elastic elements in `tangent` were found,
-        shape (n_elements, 4, 5), `nan` where there is none; elastic elements still near them keep
-        their tangent, the others change both arrays. None: all tangents are those at `u`.
 
     Returns
     -------
     int
         Number of plastic points, or `DISTORTED`.
     """
-    n = len(elements.conn)
     into = tangent if tangent is not None else np.empty((0, 8, 8))
-    at = tangent_at if tangent_at is not None else np.full((n, 4, 5), np.nan)
     code = _assemble(
-        elements, u, state, rule, seconds, tangent is not None, force, into, at, _Room.new()
+        elements, u, state, rule, seconds, tangent is not None, force, into, _Room.new()
     )
     return int(code)
 

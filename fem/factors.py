@@ -12,11 +12,15 @@ third of its time, and half in a solve (tools/benchmarks/bench_fem.py, docs/perf
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
 from ..core.arrays import Array, Integers
 from ..core.unowned import unowned
+
+_NOUGHT, _ONE = np.float32(0.0), np.float32(1.0)  # others would turn sums into double precision
 
 # limit: columns eliminated before what is right of and below them is brought up to date [-]: a
 # cache's lines
@@ -231,34 +235,23 @@ def _minus(x, a, y):
 
 
 @njit(cache=True, fastmath={"contract"})
-def _trailing(front, panel, low, high, m):
+def _trailing(front, panel, low, high, m, room):
     """Take the product of the columns and rows low..high off what is right of and below them."""
-    n = m - high
-    for i in range(high, m - 1, 2):
-        one, two = front[i, high:m], front[i + 1, high:m]
-        k = low
-        while k + 4 <= high:
-            p = k - low
-            a0, a1, a2, a3 = panel[p, i], panel[p + 1, i], panel[p + 2, i], panel[p + 3, i]
-            b0, b1 = panel[p, i + 1], panel[p + 1, i + 1]
-            b2, b3 = panel[p + 2, i + 1], panel[p + 3, i + 1]
-            u0, u1 = front[k, high:m], front[k + 1, high:m]
-            u2, u3 = front[k + 2, high:m], front[k + 3, high:m]
-            for j in range(n):
-                one[j] -= a0 * u0[j] + a1 * u1[j] + a2 * u2[j] + a3 * u3[j]
-                two[j] -= b0 * u0[j] + b1 * u1[j] + b2 * u2[j] + b3 * u3[j]
-            k += 4
-        while k < high:
-            _minus(one, panel[k - low, i], front[k, high:m])
-            _minus(two, panel[k - low, i + 1], front[k, high:m])
-            k += 1
-    if n % 2:
-        for k in range(low, high):
-            _minus(front[m - 1, high:m], panel[k - low, m - 1], front[k, high:m])
+    n, wide = m - high, high - low
+    left, right = room[: n * wide].reshape(wide, n), room[n * wide : 2 * n * wide].reshape(wide, n)
+    product = room[2 * n * wide : 2 * n * wide + n * n].reshape(n, n)
+    for k in range(wide):
+        left[k] = panel[k, high:m]
+        right[k] = front[low + k, high:m]
+    np.dot(left.T, right, product)
+    for i in range(n):
+        f, p = front[high + i, high:m], product[i]
+        for j in range(n):
+            f[j] -= p[j]
 
 
 @njit(cache=True, fastmath={"contract"})
-def _eliminate(front, wide, m, panel, lu, left):
+def _eliminate(front, wide, m, panel, room, lu, left):
     """LU of the first `wide` columns; the pivots' inverses stand on the diagonal.
 
     `lu` (wide, wide) takes both factors of the pivots, `left` (wide, m - wide) what L has below.
@@ -273,7 +266,7 @@ def _eliminate(front, wide, m, panel, lu, left):
             p = panel[k - low, k:m]
             if p[0] == 0.0:
                 return False
-            inverse = 1.0 / p[0]
+            inverse = _ONE / p[0]
             p *= inverse
             p[0] = inverse
             for j in range(k + 1 - low, high - low):
@@ -281,7 +274,8 @@ def _eliminate(front, wide, m, panel, lu, left):
         for i in range(low + 1, high):
             for k in range(low, i):
                 _minus(front[i, high:m], panel[k - low, i], front[k, high:m])
-        _trailing(front, panel, low, high, m)
+        if high < m:
+            _trailing(front, panel, low, high, m, room)
         for k in range(low, high):
             p = panel[k - low]
             for i in range(low, wide):
@@ -292,11 +286,14 @@ def _eliminate(front, wide, m, panel, lu, left):
 
 
 @njit(cache=True)
-def _factorise(data, start, begin, place, first, entry, at, parent, work, stack, panel, factors):
+def _factorise(
+    data, start, begin, place, first, entry, at, parent, work, stack, panel, room, factors
+):
     """LU blocks, what L has below them and U beside them, one supernode after the other."""
     data, start, begin, place = unowned(data), unowned(start), unowned(begin), unowned(place)
     first, entry, at, parent = unowned(first), unowned(entry), unowned(at), unowned(parent)
     work, stack, panel, factors = unowned(work), unowned(stack), unowned(panel), unowned(factors)
+    room = unowned(room)
     n_s = start.shape[0] - 1
     top = 0
     k = 0
@@ -326,7 +323,7 @@ def _factorise(data, start, begin, place, first, entry, at, parent, work, stack,
         k += wide * wide
         lower = factors[k : k + wide * below].reshape(wide, below)
         k += wide * below
-        if not _eliminate(front, wide, m, panel, lu, lower):
+        if not _eliminate(front, wide, m, panel, room, lu, lower):
             return False
         upper = factors[k : k + wide * below].reshape(wide, below)
         k += wide * below
@@ -341,7 +338,7 @@ def _factorise(data, start, begin, place, first, entry, at, parent, work, stack,
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
-def _forward(x, start, rows, begin, factors, t):
+def forward(x, start, rows, begin, factors, t):
     """Take L off the right-hand side `x` in place; `t` holds a front's sums."""
     x, start, rows, begin = unowned(x), unowned(start), unowned(rows), unowned(begin)
     factors, t = unowned(factors), unowned(t)
@@ -352,7 +349,7 @@ def _forward(x, start, rows, begin, factors, t):
         y = x[c : c + wide]
         for i in range(1, wide):
             f = factors[k + i * wide : k + i * wide + i]
-            a = 0.0
+            a = _NOUGHT
             for j in range(i):
                 a += f[j] * y[j]
             y[i] -= a
@@ -377,7 +374,7 @@ def _forward(x, start, rows, begin, factors, t):
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
-def _backward(x, start, rows, begin, factors, t):
+def backward(x, start, rows, begin, factors, t):
     """Take U off `x` in place, from the last supernode to the first."""
     x, start, rows, begin = unowned(x), unowned(start), unowned(rows), unowned(begin)
     factors, t = unowned(factors), unowned(t)
@@ -394,7 +391,7 @@ def _backward(x, start, rows, begin, factors, t):
             b[j] = x[to[j]]
         for i in range(wide):
             f = upper[i]
-            a = 0.0
+            a = _NOUGHT
             for j in range(below):
                 a += f[j] * b[j]
             y[i] -= a
@@ -446,32 +443,31 @@ class Fronts:
         self._rows, self._begin, self._parent = _structure(
             self._start, supernode, indptr, indices, count
         )
+        self._below = self._rows.astype(np.uint32)  # nothing is counted from the end
         self._place = _places(self._start, self._rows, self._begin, self._parent)
         self._entries = _entries(self._start, supernode, self._rows, self._begin, indptr, indices)
         below = np.diff(self._begin)
         widest = int((wide + below).max())
-        self._front = np.empty(widest**2)
-        self._panel = np.empty((_BLOCK, widest))
-        self._sums = np.empty(widest)
-        self._stack = np.empty(_stack_size(below, self._parent))
-        self._factors = np.empty(int(np.sum(wide * (wide + 2 * below))))
+        self._front = np.empty(widest**2, np.float32)
+        self._panel = np.empty((_BLOCK, widest), np.float32)
+        self._room = np.empty(widest * (widest + 2 * _BLOCK), np.float32)
+        self._sums = np.empty(widest, np.float32)
+        self._stack = np.empty(_stack_size(below, self._parent), np.float32)
+        self._factors = np.empty(int(np.sum(wide * (wide + 2 * below))), np.float32)
 
     def factorise(self, data: Array) -> bool:
         """Factorise the matrix with these entries, in the pattern's order; false: a zero pivot."""
         return bool(
             _factorise(
                 data, self._start, self._begin, self._place, *self._entries, self._parent,
-                self._front, self._stack, self._panel, self._factors,
+                self._front, self._stack, self._panel, self._room, self._factors,
             )
         )  # fmt: skip
 
-    def solve(self, rhs: Array) -> Array:
-        """Solution for a right-hand side (n,) by the last factors."""
-        x = rhs.copy()
-        known = (self._start, self._rows, self._begin, self._factors, self._sums)
-        _forward(x, *known)
-        _backward(x, *known)
-        return x
+    @property
+    def known(self) -> tuple[Any, ...]:
+        """What `forward` and `backward` take beside the right-hand side."""
+        return self._start, self._below, self._begin, self._factors, self._sums
 
 
 def postorder(indptr: Integers, indices: Integers) -> Integers:

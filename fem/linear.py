@@ -23,6 +23,7 @@ from numba import njit
 from ..core.arrays import Array, Integers
 from .contact import ContactState, Surfaces, Triplets
 from .factors import Fronts, postorder
+from .krylov import gmres
 from .rules import RULES
 
 Solve = Callable[[Array], Array]
@@ -31,7 +32,6 @@ _FORCING = RULES.forcing
 _RESIDUAL = RULES.krylov_residual
 _KRYLOV = RULES.krylov_steps
 _PATIENCE = RULES.refactor_after
-_LEFT = RULES.pivoting_from
 _REACH = RULES.pattern_reach
 
 
@@ -105,7 +105,11 @@ class LinearSystem:
         self.n_patterns = 0
         self.n_factorisations = 0
         self._fronts: Fronts | None = None
-        self._factors: Solve | None = None
+        self._room = (
+            np.empty(self.n, np.float32),
+            np.empty(self.n),
+            np.empty((_KRYLOV + 1, self.n)),
+        )
         self._n_last = _KRYLOV  # as if GMRES had been slow: there are no factors yet
         self._element_dofs = element_dofs
         self._plain = np.full(n_dofs, -1, dtype=np.int64)
@@ -198,7 +202,6 @@ class LinearSystem:
 
     def solve(self, rhs: Array) -> Array:
         """Solution of K x = rhs over the free degrees of freedom, in their own order."""
-        assert self._matrix is not None
         permuted = np.empty(self.n)
         permuted[self._order] = rhs
         x = self._iterate(permuted) if self._n_last <= _PATIENCE else None
@@ -207,42 +210,26 @@ class LinearSystem:
         return np.asarray(x[self._order])
 
     def _factorised(self, rhs: Array) -> Array:
-        """Solve with fresh factors; they are SuperLU's where rows have to be exchanged."""
+        """Solve with fresh factors; by SuperLU where rows have to be exchanged."""
         matrix, fronts = self._matrix, self._fronts
         assert matrix is not None
         assert fronts is not None
         self.n_factorisations += 1
-        self._n_last = 0
-        if fronts.factorise(matrix.data):
-            self._factors = fronts.solve
-            x = fronts.solve(rhs)
-            if np.abs(matrix @ x - rhs).sum() <= _LEFT * np.abs(rhs).sum():
-                return x
-        self._factors = superlu(matrix)
-        return np.asarray(self._factors(rhs))
+        x = self._iterate(rhs) if fronts.factorise(matrix.data) else None
+        self._n_last = 0 if x is not None else _KRYLOV
+        return x if x is not None else np.asarray(superlu(matrix)(rhs))
 
     def _iterate(self, rhs: Array) -> Array | None:
-        """Solve with the factors of an earlier matrix as preconditioner; none: not good enough.
+        """Solve with the factors that there are as preconditioner; none: not good enough.
 
-        The preconditioner stands on the left, so that the criterion is one on the correction
-        itself; a residual would be ruled by the stiff contact. Factors that have become wrong
-        can make that criterion blind, so the residual must have fallen too.
+        Factors that have become wrong can make GMRES's criterion blind, so the residual must have
+        fallen too.
         """
-        matrix, factors = self._matrix, self._factors
+        matrix, fronts = self._matrix, self._fronts
         assert matrix is not None
-        assert factors is not None
-        self._n_last = 0
-
-        def preconditioned(v: Array) -> Array:
-            self._n_last += 1
-            return np.asarray(factors(matrix @ v))
-
-        x, failed = sparse_linalg.gmres(
-            sparse_linalg.LinearOperator((self.n, self.n), preconditioned, dtype=float),
-            factors(rhs),
-            rtol=_FORCING,
-            restart=_KRYLOV,
-            maxiter=1,
-        )
-        left = np.abs(matrix @ x - rhs).sum()
-        return None if failed or left > _RESIDUAL * np.abs(rhs).sum() else np.asarray(x)
+        assert fronts is not None
+        x = np.empty(self.n)
+        parts = (matrix.indptr, matrix.indices.view(np.uint32), matrix.data)
+        steps, left = gmres(parts, rhs, fronts.known, (*self._room, x), _FORCING, _KRYLOV)
+        self._n_last = abs(steps)
+        return None if steps < 0 or not left <= _RESIDUAL else x

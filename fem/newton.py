@@ -78,7 +78,6 @@ class Solver:
         self.free = self.grid.free
         self.system = LinearSystem(dofs, free=self.free, n_dofs=self.grid.n_dofs)
         self._tangent = np.empty((n, 8, 8))
-        self._tangent_at = np.full((n, 4, 5), np.nan)
         self._triplets = Triplets.for_surfaces(self.grid.surfaces)
         self._seconds = math.inf
         self._grip: Grip | None = None
@@ -125,7 +124,7 @@ class Solver:
         force = np.zeros(self.grid.n_dofs)
         code = bulk_forces(
             self.elements, u, state=state, rule=self.rule, force=force, tangent=self._tangent,
-            tangent_at=self._tangent_at, seconds=self._seconds,
+            seconds=self._seconds,
         )  # fmt: skip
         middle = time.process_time()
         self.timers.assembly += middle - start

@@ -17,11 +17,6 @@ class FemRules:
         "[-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    tangent_kept: float = rule(
-        1e-3,
-        "change of a deformation gradient within which an elastic element keeps its tangent [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     core_radius: float = rule(
         0.12, "radius of the innermost block over that where the fine zone begins [-]",
         "chosen; no measurement is kept",
@@ -51,10 +46,6 @@ class FemRules:
         7, "steps of GMRES after which the next matrix is factorised anew [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    pivoting_from: float = rule(
-        0.02, "relative residual of fresh factors beyond which rows are exchanged [-]",
-        "1e-3 is the most that was seen of sound factors",
-    )  # fmt: skip
     pattern_reach: int = rule(
         3, "master nodes beyond the segments in use that the matrix already couples [-]",
         "chosen; no measurement is kept",
@@ -73,7 +64,7 @@ class FemRules:
         "makes the smooth curve there two-sided",
     )  # fmt: skip
     soft_start: tuple[float, ...] = rule(
-        (1e-3, 1e-2, 1e-1, 1.0),
+        (0.03, 1.0),
         "contact stiffness on the way to the first equilibrium, over its own [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -282,8 +282,7 @@ def problem_of(
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))
-    names = dict.fromkeys((*setup.assume, *assume))
-    problem = replace(problem, assumed=tuple(_assumed(names, problem, stated)))
+    problem = _with_assumed(problem, (*setup.assume, *assume), stated)
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
     again = derived_columns(recordings, readings)
@@ -307,20 +306,18 @@ def problem_of(
     )  # fmt: skip
 
 
-def _assumed(
-    names: Iterable[str], problem: Problem, stated: Sequence[Scene]
-) -> Iterator[Mechanism]:
-    """Yield what is taken to act, by its name."""
+def _with_assumed(problem: Problem, names: Iterable[str], stated: Sequence[Scene]) -> Problem:
+    """Return the problem with what is taken to act, by its names."""
     situations = [(s, c.around) for c, s in zip(problem.conditions, stated, strict=True)]
-    around = situations[0][1]
-    known = {m.name: m for m in MECHANISMS if _sized(m, around)}
+    known = {m.name: m for m in MECHANISMS if _sized(m, situations[0][1])}
+    names = dict.fromkeys(names)
     for name in names:
         why = known[name].ruled_out(situations) if name in known else "no published size for it"
         if why:
             raise InputError(
                 f"{name}: {why}", source=problem.name, key="assume", allowed=", ".join(known)
             )
-        yield known[name]
+    return replace(problem, assumed=tuple(known[name] for name in names))
 
 
 def _sized(m: Mechanism, around: Surroundings) -> bool:

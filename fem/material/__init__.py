@@ -9,25 +9,18 @@ with heat (`flow`).
 
 from __future__ import annotations
 
-from .flow import NO_LAW, FlowLaws, Law, law_of, no_laws
-from .slide import EXACT, RADIAL
-from .tangent import deviatoric_tangent
+from . import lanes
+from .flow import FlowLaws, Law, law_of, no_laws
+from .lanes import EXACT, RADIAL
 from .tensor import exponential, log_strain
-from .update import MaterialStep, Updated, deviatoric_pk1, elastic_deviator, hardened
 
 __all__ = [
     "EXACT",
-    "NO_LAW",
     "RADIAL",
-    "Law",
     "FlowLaws",
-    "MaterialStep",
-    "Updated",
-    "deviatoric_pk1",
-    "deviatoric_tangent",
-    "elastic_deviator",
+    "Law",
     "exponential",
-    "hardened",
+    "lanes",
     "law_of",
     "log_strain",
     "no_laws",

@@ -103,12 +103,10 @@ class Circle(NamedTuple):
 
     Parameters
     ----------
-    start, mean, end
-        Radius where it is reached, on which the point slides, and in the end.
+    mean, end
+        Radius on which the point slides, and in the end.
     gain
-        Derivative of the end by lambda.
-    stiff
-        Derivative of the equation for lambda by lambda.
+        Derivative of the end by what drives the flow, both as the circle grows.
     drift
         Derivative of the way along the increment by the mean radius.
     flow
@@ -117,20 +115,15 @@ class Circle(NamedTuple):
         Mean radius while it flows, for the plastic work.
     decay
         exp(-length/mean) of the slide on it.
-    hard
-        Whether it grows at all.
     """
 
-    start: float
     mean: float
     end: float
     gain: float
-    stiff: float
     drift: float
     flow: float
     worked: float
     decay: float
-    hard: bool
 
 
 @njit(cache=True)
@@ -207,10 +200,6 @@ def at_point(law, curve, strain, work):
     )
 
 
-NO_LAW = Law(NO_RATE, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, math.inf)
-"""Of a point that is perfectly plastic."""
-
-
 @njit(cache=True)
 def softening(law, work):
     """Factor that the heat of a plastic work leaves of the strength, and its derivative."""
@@ -261,17 +250,6 @@ def grown(law, curve, flow):
 
 
 @njit(cache=True)
-def perfect(radius, length):
-    """Circle of a perfectly plastic step, on which a point may slide by `length`."""
-    decay = math.exp(-length / radius)
-    return Circle(radius, radius, radius, 0.0, 1.0, 0.0, 0.0, radius, decay, False)
-
-
-NO_CIRCLE = Circle(math.inf, math.inf, math.inf, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, False)
-"""Of a point that stays elastic."""
-
-
-@njit(cache=True)
 def circle_of(law, curve, J, start, way):
     """Find how far the circle grows in a step, by Newton's method between two bounds.
 
@@ -286,7 +264,7 @@ def circle_of(law, curve, J, start, way):
     flow = high - start
     if not 0.0 < flow < high:
         flow = 0.5 * high
-    found = perfect(start, 0.0)
+    found = Circle(start, start, 0.0, 0.0, 0.0, start, 1.0)
     for _ in range(_MOST):
         now = grown(law, curve, flow)
         end = J * now.end
@@ -299,7 +277,7 @@ def circle_of(law, curve, J, start, way):
         off = flow + end - n - mean * along
         stiff = 1.0 + gain * (1.0 - 0.5 * drift)
         worked = 0.5 * (J * now.start + end)
-        found = Circle(start, mean, end, gain, stiff, drift, flow, worked, a, True)
+        found = Circle(mean, end, gain / stiff, drift, flow, worked, a)
         if off > 0.0:
             high = flow
         else:
@@ -312,25 +290,3 @@ def circle_of(law, curve, J, start, way):
             # many orders of magnitude may lie below
             flow = math.sqrt(low * high) if low > 0.0 else 0.03 * high
     return found
-
-
-@njit(cache=True)
-def linear_circle(circle, c, changes):
-    """Changes of the mean and the end radius in a step that flows.
-
-    Parameters
-    ----------
-    circle, c
-        The circle, and the cosine where the slide begins.
-    changes
-        Of n, of the length, of the cosine and of the mean strain.
-    """
-    dn, dl, dc, dm = changes
-    a = circle.decay
-    even = 3.0 * circle.end * dm
-    den = 1.0 + c + a * a * (1.0 - c)
-    last = (1.0 + c - a * a * (1.0 - c)) / den
-    drive = dn - even + 0.5 * circle.drift * (dn + even) + last * dl
-    drive += circle.mean * (1.0 - a * a) / den * dc
-    dend = circle.gain * drive / circle.stiff + even
-    return 0.5 * (dn + dend), dend

@@ -7,19 +7,11 @@ import pytest
 import skfem
 from dentscope.fem.assemble import advance, bulk_forces
 from dentscope.fem.elements import Elements, State
-from dentscope.fem.material import (
-    EXACT,
-    NO_LAW,
-    RADIAL,
-    MaterialStep,
-    deviatoric_tangent,
-    elastic_deviator,
-    no_laws,
-)
+from dentscope.fem.material import EXACT, RADIAL, no_laws
+from dentscope.studies.verification.material_point import MaterialPoint
 from skfem.helpers import ddot
 
 G, K, RADIUS = 0.4, 0.9, 0.003
-NO_CURVE = np.empty((3, 0))
 GAUSS = 0.5 / math.sqrt(3.0)
 POINTS = np.array(
     [[0.5 - GAUSS, 0.5 + GAUSS, 0.5 + GAUSS, 0.5 - GAUSS],
@@ -94,6 +86,12 @@ def test_patch_of_uniform_strain_is_in_equilibrium(distorted, radius):
     assert (plastic == 4 * len(elements.conn)) == np.isfinite(radius)
 
 
+def point_of(state, e, q, radius, rule):
+    point = MaterialPoint(G, radius=radius, rule=rule)
+    point.rest(state.F[e, q], state.b[e, q], state.strain[e, q])
+    return point
+
+
 def plain_scikit_fem(mesh, u, state, radius, rule):
     """Residual and tangent by scikit-fem forms, with the stress evaluated point by point.
 
@@ -123,9 +121,7 @@ def plain_scikit_fem(mesh, u, state, radius, rule):
     for e in range(F.shape[0]):
         for q in range(4):
             f = F[e, q]
-            old = (state.F[e, q], state.b[e, q], state.strain[e, q])
-            step = MaterialStep(f, *old, radius, rule, False, NO_LAW)
-            s0, s1, s2, s3 = elastic_deviator(step, NO_CURVE).e
+            s0, s1, s2, s3 = point_of(state, e, q, radius, rule).walk(f).e
             tau = 2.0 * G * np.array([[s0, s2], [s2, s1]])
             P[e, q, :4] = (tau @ np.linalg.inv(f[:4].reshape(2, 2)).T).ravel()
             P[e, q, 4] = 2.0 * G * s3 / f[4]
@@ -176,17 +172,6 @@ def test_tangent_is_the_derivative_of_the_residual(distorted, size, radius, rule
         assert tangent == pytest.approx(tangent.T, abs=1e-10 * np.abs(tangent).max())
 
 
-def point_tangents(F, state, radius, rule):
-    """dP/dF of the deviatoric part, point by point, from the material's own functions."""
-    A, P = np.empty((*F.shape[:2], 5, 5)), np.empty(5)
-    for e in range(F.shape[0]):
-        for q in range(4):
-            old = (state.F[e, q], state.b[e, q], state.strain[e, q])
-            step = MaterialStep(F[e, q], *old, radius, rule, False, NO_LAW)
-            deviatoric_tangent(step, NO_CURVE, G, P, A[e, q])
-    return A
-
-
 @pytest.mark.parametrize(("size", "radius"), [(0.002, np.inf), (0.05, RADIUS)])
 def test_tangent_equals_a_plain_scikit_fem_form(distorted, size, radius):
     elements = elements_of(distorted, radius)
@@ -213,7 +198,10 @@ def test_tangent_equals_a_plain_scikit_fem_form(distorted, size, radius):
     total = volume.sum(axis=1)
     theta = ((f0 * f3 - f1 * f2) * f4 * volume).sum(axis=1) / total
     p = (K * np.log(theta) / theta)[:, None]
-    A = point_tangents(F, state, radius, EXACT)
+    A = np.array(
+        [[point_of(state, e, q, radius, EXACT).tangent(F[e, q]) for q in range(4)]
+         for e in range(len(F))]
+    )  # fmt: skip
     # p d2J/dF2
     for i, j, v in ((0, 3, f4), (1, 2, -f4), (0, 4, f3), (3, 4, f0), (1, 4, -f2), (2, 4, -f1)):
         A[..., i, j] += p * v

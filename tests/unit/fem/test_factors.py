@@ -7,6 +7,7 @@ import pytest
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 from dentscope.fem.factors import Fronts, postorder
+from dentscope.fem.krylov import gmres
 
 
 def grid(nx: int, ny: int, rng: np.random.Generator) -> sparse.csc_matrix:
@@ -37,6 +38,17 @@ def in_postorder(matrix: sparse.csc_matrix) -> sparse.csc_matrix:
     return matrix
 
 
+def solved(fronts: Fronts, matrix: sparse.csc_matrix, rhs: np.ndarray) -> np.ndarray:
+    """By factors in single precision and GMRES down to their round-off."""
+    n = len(rhs)
+    room = (np.empty(n, np.float32), np.empty(n), np.empty((13, n)), np.empty(n))
+    parts = (matrix.indptr, matrix.indices.view(np.uint32), matrix.data)
+    steps, left = gmres(parts, rhs, fronts.known, room, 1e-6, 12)
+    assert 0 < steps <= 3
+    assert left < 1e-5
+    return room[-1]
+
+
 def fronts_of(matrix: sparse.csc_matrix) -> Fronts:
     return Fronts(matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64))
 
@@ -54,7 +66,7 @@ def test_solutions_are_those_of_superlu(shape: tuple[int, int]) -> None:
         assert fronts.factorise(again.data)
         rhs = rng.normal(size=again.shape[0])
         expected = sparse_linalg.spsolve(again, rhs)
-        assert np.abs(fronts.solve(rhs) - expected).max() < 1e-11 * np.abs(expected).max()
+        assert np.abs(solved(fronts, again, rhs) - expected).max() < 1e-5 * np.abs(expected).max()
 
 
 def test_any_order_and_bodies_that_do_not_touch() -> None:
@@ -66,7 +78,7 @@ def test_any_order_and_bodies_that_do_not_touch() -> None:
     fronts = fronts_of(matrix)
     assert fronts.factorise(matrix.data)
     rhs = rng.normal(size=matrix.shape[0])
-    assert np.allclose(matrix @ fronts.solve(rhs), rhs, rtol=0.0, atol=1e-11)
+    assert np.allclose(matrix @ solved(fronts, matrix, rhs), rhs, rtol=0.0, atol=1e-5)
 
 
 def test_a_zero_pivot_is_told() -> None:

@@ -14,6 +14,7 @@ from dentscope.fem import loading, unloading
 from dentscope.fem.assemble import DISTORTED, bulk_forces
 from dentscope.fem.discretise import discretise
 from dentscope.fem.elements import State
+from dentscope.fem.factors import Fronts
 from dentscope.fem.linear import LinearSystem
 from dentscope.fem.loading import Loading
 from dentscope.fem.material import EXACT
@@ -70,32 +71,36 @@ def test_a_correction_is_halved_five_times_and_has_three_secants(residual, evalu
     assert len(count) == evaluations
 
 
-def system(matrix, factors) -> SimpleNamespace:
-    return SimpleNamespace(
-        _matrix=sparse.csc_matrix(matrix), _factors=factors, _n_last=0, n=len(matrix)
-    )
+def system(diagonal, factors=None) -> SimpleNamespace:
+    """A diagonal matrix, and the factors of another."""
+    n = len(diagonal)
+    matrix = sparse.csc_matrix(np.diag(diagonal))
+    fronts = Fronts(matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64))
+    assert fronts.factorise(np.ones(n) if factors is None else factors)
+    room = (np.empty(n, np.float32), np.empty(n), np.empty((13, n)))
+    return SimpleNamespace(_matrix=matrix, _fronts=fronts, _room=room, _n_last=0, n=n)
 
 
 def test_a_direction_lacks_half_a_per_cent_after_12_steps_at_the_most() -> None:
     """Of eigenvalues 1 and 2 the first step leaves the part of the second in the whole."""
 
     def steps(part) -> int:
-        one = system(np.diag([1.0, 2.0]), lambda v: v)
+        one = system([1.0, 2.0])
         assert LinearSystem._iterate(one, np.array([1.0, part])) is not None
         return one._n_last
 
     assert steps(0.0049) == steps(0.001)
     assert steps(0.0051) == steps(0.0049) + 1
     # of many eigenvalues far apart none is left out
-    many = system(np.diag(np.geomspace(1.0, 1e6, 60)), lambda v: v)
+    many = system(np.geomspace(1.0, 1e6, 60))
     assert LinearSystem._iterate(many, np.ones(60)) is None
-    assert many._n_last in (12, 13, 14)
+    assert many._n_last == 12
 
 
 @pytest.mark.parametrize(("part", "kept"), [(0.24, True), (0.26, False)])
 def test_a_direction_leaves_a_fifth_of_the_residual(part, kept) -> None:
     """Factors that are blind to the second of two unknowns leave it as it is."""
-    blind = system(np.eye(2), lambda v: v * np.array([1.0, 1e-6]))
+    blind = system([1.0, 1.0], np.array([1.0, 1e6]))
     assert (LinearSystem._iterate(blind, np.array([1.0, part])) is not None) == kept
 
 
@@ -110,13 +115,15 @@ def test_a_matrix_is_factorised_anew_after_seven_steps(steps, anew) -> None:
     assert used == ["new" if anew else "old"]
 
 
-@pytest.mark.parametrize(("left", "kept"), [(0.019, True), (0.021, False)])
-def test_rows_are_exchanged_where_fresh_factors_leave_a_fiftieth(left, kept) -> None:
-    fronts = SimpleNamespace(factorise=lambda _: True, solve=lambda v: v * (1.0 - left))
-    given = SimpleNamespace(_matrix=sparse.csc_matrix(np.eye(3)), _fronts=fronts,
-                            n_factorisations=0)  # fmt: skip
-    found = LinearSystem._factorised(given, np.ones(3))
-    assert found == pytest.approx(np.full(3, 1.0 - left) if kept else np.ones(3))
+@pytest.mark.parametrize("whole", [True, False])
+def test_rows_are_exchanged_where_fresh_factors_do_not_serve(whole) -> None:
+    """SuperLU solves once; the next matrix is factorised anew."""
+    given = SimpleNamespace(
+        _matrix=sparse.csc_matrix([[0.0, 2.0], [4.0, 0.0]]), n_factorisations=0,
+        _fronts=SimpleNamespace(factorise=lambda _: whole), _iterate=lambda _: None,
+    )  # fmt: skip
+    assert LinearSystem._factorised(given, np.array([2.0, 4.0])) == pytest.approx([1.0, 1.0])
+    assert given._n_last > 7
 
 
 def test_a_pattern_couples_three_master_nodes_beyond_the_segments_in_use() -> None:
@@ -181,7 +188,7 @@ def test_a_failed_step_is_cut_to_four_tenths_seven_times() -> None:
     assert tried[:2] == [1.2, pytest.approx(1.2 ** (1 / 3))]
 
 
-def test_the_first_contact_starts_a_thousand_times_as_soft() -> None:
+def test_the_first_contact_starts_at_three_hundredths_of_its_stiffness() -> None:
     seen = []
 
     class Surfaces(SimpleNamespace):
@@ -198,12 +205,12 @@ def test_the_first_contact_starts_a_thousand_times_as_soft() -> None:
 
     def equilibrium(guess, **_):
         seen.append(solver.surfaces.stiffness)
-        return SimpleNamespace(u=guess) if len(seen) < 4 else None
+        return SimpleNamespace(u=guess) if len(seen) < 2 else None
 
     solver.equilibrium = equilibrium
     given = SimpleNamespace(_stops=[1e-4], _solver=lambda: solver)
     assert Loading._first_contact(given) is None
-    assert seen == [1e-3, 1e-2, 1e-1, 1.0]
+    assert seen == [0.03, 1.0]
 
 
 def test_an_unloading_has_sixty_steps(monkeypatch) -> None:
@@ -262,6 +269,6 @@ def test_an_element_of_a_fiftieth_of_its_volume_is_inverted(volume, inverted) ->
     u[1::2] = (volume - 1.0) * grid.mesh.points[:, 1]
     code = bulk_forces(
         elements, u, state=State.virgin(n), rule=EXACT, force=np.zeros(grid.n_dofs),
-        tangent=np.empty((n, 8, 8)), tangent_at=np.full((n, 4, 5), np.nan), seconds=1.0,
+        tangent=np.empty((n, 8, 8)), seconds=1.0,
     )  # fmt: skip
     assert (code == DISTORTED) == inverted

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from .....fem.material import EXACT, NO_LAW, RADIAL, MaterialStep, elastic_deviator, log_strain
+from .....fem.material import EXACT, RADIAL, log_strain
 from ...bench import Bench
+from ...material_point import MaterialPoint
 from ...result import Measurement, Result
 
 _RADIUS = 0.004
-_NO_CURVE = np.empty((3, 0))
+_G = 0.4
 _SAMPLES = 300
 
 
@@ -23,16 +24,17 @@ def run(bench: Bench) -> Result:
             b = _elastic_b(rng)
             strain = np.array(log_strain(b)[0])
             new = _after(_gradient(rng, 0.03), old)
-            step = MaterialStep(new, old, b, strain, _RADIUS, rule, False, NO_LAW)
-            e, mean, plastic, *_ = elastic_deviator(step, _NO_CURVE)
+            point, elastic = MaterialPoint(_G, radius=_RADIUS, rule=rule), MaterialPoint(_G)
+            for one in (point, elastic):
+                one.rest(old, b, strain)
+            done = point.walk(new, stay=True)
             angle = rng.uniform(-np.pi, np.pi)
-            turned, *_ = elastic_deviator(step._replace(F=_rotated(new, angle)), _NO_CURVE)
-            worst = max(worst, _difference(e, turned, angle) / _RADIUS)
-            if plastic:
-                surface = max(surface, abs(_norm(e) / (_RADIUS * np.exp(3.0 * mean)) - 1.0))
-            elastic = step._replace(radius=np.inf)
-            pure, *_ = elastic_deviator(elastic._replace(F=new * 1.01), _NO_CURVE)
-            plain, *_ = elastic_deviator(elastic, _NO_CURVE)
+            turned = point.walk(_rotated(new, angle), stay=True).e
+            worst = max(worst, _difference(done.e, turned, angle) / _RADIUS)
+            if done.flows:
+                size = _RADIUS * np.exp(3.0 * done.mean)
+                surface = max(surface, abs(_norm(done.e) / size - 1.0))
+            pure, plain = (elastic.walk(F, stay=True).e for F in (new * 1.01, new))
             volume = max(volume, float(np.abs(np.subtract(pure, plain)).max()) / _RADIUS)
     source = "exact"
     return Result(
@@ -73,7 +75,7 @@ def _elastic_b(rng: np.random.Generator) -> np.ndarray:
     return np.array([plane[0, 0], plane[1, 1], plane[0, 1], np.exp(2.0 * strain[3])])
 
 
-def _difference(e: tuple[float, ...], turned: tuple[float, ...], angle: float) -> float:
+def _difference(e: np.ndarray, turned: np.ndarray, angle: float) -> float:
     c, s = np.cos(angle), np.sin(angle)
     Q = np.array([[c, -s], [s, c]])
     plane = Q @ np.array([[e[0], e[2]], [e[2], e[1]]]) @ Q.T
@@ -81,5 +83,5 @@ def _difference(e: tuple[float, ...], turned: tuple[float, ...], angle: float) -
     return float(np.abs(expected - np.array(turned)).max())
 
 
-def _norm(e: tuple[float, ...]) -> float:
+def _norm(e: np.ndarray) -> float:
     return float(np.sqrt(e[0] ** 2 + e[1] ** 2 + e[3] ** 2 + 2.0 * e[2] ** 2))
