@@ -96,21 +96,8 @@ def diagnose(
     ----------
     recordings
         From `recordings.read`.
-    seed
-        Of every draw; the same seed gives the same verdict.
-    confirm
-        Also sample the leading explanations' evidence, use the full null ensemble, and solve the
-        set's own pair by finite elements, unless `law` says otherwise.
-    law
-        Contact law of the baseline: `fitted`, or `table` for finite elements of the set's own pair.
-        None: `table` with `confirm`, where a body has a flow curve or the target asks for it.
-    cautious
-        Whether a name, or 'nothing is missing', needs four fifths of the probability and not half.
-    assume
-        Names of mechanisms that act whatever is found, with published numbers; set.toml's `assume`
-        names others.
-    mechanisms
-        One's own, tried beside those of the library and those that other packages add.
+    seed, confirm, law, cautious, assume, mechanisms
+        As `dentscope.diagnose` takes and explains them.
     progress
         Called with a line before each step.
 

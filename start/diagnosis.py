@@ -123,9 +123,10 @@ def diagnose(
     cautious
         Say only what has four fifths of the probability, not half.
     assume
-        Names of mechanisms that act whatever is found, with published numbers.
+        Names of mechanisms that act whatever is found, with published numbers; set.toml's `assume`
+        names others.
     mechanisms
-        One's own, tried beside those of the library; example 8 has one.
+        One's own, tried beside those of the library and of other packages; example 8 has one.
 
     Raises
     ------

@@ -21,6 +21,8 @@ CHOICES = {
     ("dynamics/tabulated/energy_route.py", "NAMES"): "order of a computed row",
     ("reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
+    ("reduce/table/sheet/words.py", "DENTS"): "of which several readings are one trial's",
+    ("reduce/table/sheet/words.py", "KINDS"): "words of laboratories' headers",
     ("dynamics/columns.py", "_SHOWN"): "which columns a screen shows",
     ("dynamics/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
