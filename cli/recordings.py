@@ -12,7 +12,7 @@ from .shared.groups import group
 from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
 
-app = group("Recording sets, measured impacts: list, check, audit, new, fetch.")
+app = group("Recording sets, measured impacts: list, check, audit, new, add, fetch.")
 
 NewFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
 SetFolder = Annotated[
@@ -137,6 +137,19 @@ def _new_from(
         show_table(console(), head, rows)
         return
     typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {quote(str(folder))}")
+
+
+@app.command()
+def add(
+    folder: NewFolder,
+    rows: Annotated[Path, typer.Argument(metavar="ROWS", help="CSV with columns of trials.csv.")],
+) -> None:
+    """Add trials to a set, all rows of a table or none; then diagnose it again."""
+    from ..recordings.adding import add_trials
+
+    now, new = add_trials(folder, rows)
+    typer.echo(f"{folder}: {_trials(len(new))} added, {_trials(len(now.trials))} in all")
+    typer.echo(f"then: dentscope diagnose {quote(str(folder))}")
 
 
 @app.command("list")

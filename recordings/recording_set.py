@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -512,3 +513,18 @@ def files_of(found: RecordingSet) -> dict[str, bytes | str]:
         **curves, **flows, "set.toml": setup_text(found.setup),
         "trials.csv": trials_text(found.trials),
     }  # fmt: skip
+
+
+def read_as(folder: Path, files: Mapping[str, bytes | str], *, unfinished: bool) -> None:
+    """Read a set as it would be with these files; a mistake names the folder they are meant for."""
+    with tempfile.TemporaryDirectory() as made:
+        place = Path(made)
+        for name, content in files.items():
+            path = place / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(content.encode() if isinstance(content, str) else content)
+        try:
+            read(place, unfinished=unfinished)
+        except InputError as error:
+            lines = str(error).replace(str(place), str(folder)).splitlines()
+            raise InputErrors(tuple(map(InputError, lines))) from None

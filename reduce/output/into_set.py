@@ -8,7 +8,6 @@ it would be, has been read without a mistake.
 
 from __future__ import annotations
 
-import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -19,14 +18,14 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError, InputErrors
+from ...core.errors import InputError
 from ...core.inputs.names import ALLOWED, names_a_file
 from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.observables import LOAD
 from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
-from ...recordings.recording_set import RecordingSet, files_of, read
+from ...recordings.recording_set import RecordingSet, files_of, read, read_as
 from ...recordings.setup_file import SetFile, flowing, setup_text, without_marks
 from ...recordings.template import Shape, template_text
 from ...recordings.trials import Trials
@@ -363,25 +362,10 @@ def _write_whole(
             if columns:
                 files[f"{kind}/{name}.csv"] = _curve_text(columns)
     if len(after.trials):
-        _read_as(folder, files)
+        read_as(folder, files, unfinished=True)
     else:
         del files["trials.csv"]
     write_files(folder, files)
-
-
-def _read_as(folder: Path, files: Mapping[str, bytes | str]) -> None:
-    """Read the set as it would be; a mistake names the folder that it is meant for."""
-    with tempfile.TemporaryDirectory() as made:
-        place = Path(made)
-        for name, content in files.items():
-            path = place / name
-            path.parent.mkdir(exist_ok=True)
-            path.write_bytes(content.encode() if isinstance(content, str) else content)
-        try:
-            read(place, unfinished=True)
-        except InputError as error:
-            lines = str(error).replace(str(place), str(folder)).splitlines()
-            raise InputErrors(tuple(map(InputError, lines))) from None
 
 
 def _curve_text(columns: Mapping[str, Array]) -> str:

@@ -1,0 +1,70 @@
+"""New trials into a set: the rows of a table below those that are there, all of them or none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..core.errors import InputErrors
+from ..core.inputs.csv_table import Problems, TextTable, read_text_table, shown
+from ..core.output import csv_text, locked, write_files
+from .columns import TRIAL_COLUMNS, VARIED
+from .recording_set import RecordingSet, files_of, read, read_as
+from .trials import read_trials
+
+
+def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]:
+    """Add trials to a set; what is there stays as it is written.
+
+    Parameters
+    ----------
+    folder
+        Of the set.
+    rows
+        Table with columns of trials.csv; those that the set has not had yet are added to it. Where
+        the set has an `order` and the table has none, the rows follow in theirs.
+
+    Returns
+    -------
+    tuple
+        The set as it is now, and the names of the new trials.
+
+    Raises
+    ------
+    InputErrors
+        Every mistake of the rows, each by file, row and column; nothing is written then.
+    """
+    # another process may add to the same set: neither's rows must be lost
+    with locked(folder):
+        before = read(folder)
+        problems = Problems(str(rows))
+        new = read_trials(rows, frozenset(before.setup.strikers), problems)
+        table = read_text_table(rows, TRIAL_COLUMNS, Problems(str(rows)), free=VARIED)
+        if new is not None and table is not None:
+            for row, name in zip(table.rows, new.trial, strict=True):
+                if name in before.trials.trial:
+                    problems.add(f"{shown(name)} is in the set already", row=row, column="trial",
+                                 allowed="a name of its own")  # fmt: skip
+        if problems.found or new is None or table is None:
+            raise InputErrors(tuple(problems.found))
+        old = read_text_table(folder / "trials.csv", TRIAL_COLUMNS, Problems(""), free=VARIED)
+        assert old is not None
+        text = _joined(old, table)
+        setup = (folder / "set.toml").read_text(encoding="utf-8")
+        after = {**files_of(before), "set.toml": setup, "trials.csv": text}
+        read_as(folder, after, unfinished=False)
+        write_files(folder, {"trials.csv": text})
+    return read(folder), new.trial
+
+
+def _joined(old: TextTable, new: TextTable) -> str:
+    columns = [*old.columns, *(name for name in new.columns if name not in old.columns)]
+    cells: dict[str, Sequence[str]] = dict(new.cells)
+    if "order" in old.columns and "order" not in new.columns:
+        last = max((float(x) for x in old.cells["order"] if x), default=0.0)
+        cells["order"] = [f"{last + k:g}" for k in range(1, len(new.rows) + 1)]
+    parts = [
+        zip(*(part.get(name, ("",) * n) for name in columns), strict=True)
+        for part, n in ((old.cells, len(old.rows)), (cells, len(new.rows)))
+    ]
+    return csv_text((row for part in parts for row in part), header=columns)

@@ -1,0 +1,77 @@
+"""New trials into a set: kept as written, all or none, and none lost between two at once."""
+
+import subprocess
+import sys
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+from dentscope.cli import run
+from dentscope.core import InputErrors
+from dentscope.recordings import read
+from dentscope.recordings.adding import add_trials
+from dentscope.recordings.shipped import set_folder
+
+HEAD = "trial,striker,angle_deg,impact_speed_m_s,restitution,restitution_std"
+SHIPPED = set_folder(Path("kharaz-2001-oblique"))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return copytree(SHIPPED, tmp_path / "set")
+
+
+def rows(folder, text) -> Path:
+    path = folder.parent / "rows.csv"
+    path.write_text(text)
+    return path
+
+
+def test_rows_go_below_those_that_are_there(folder, capsys):
+    before = (folder / "trials.csv").read_text()
+    first = read(folder)
+    striker = first.trials.striker[0]
+    path = rows(folder, f"{HEAD},x_day\nslow,{striker},90,1,0.7,0.01,2\n")
+    assert run(["recordings", "add", str(folder), str(path)]) == 0
+    assert f"1 trial added, {len(first.trials) + 1} trials in all" in capsys.readouterr().out
+    now = read(folder)
+    assert now.trials.trial == (*first.trials.trial, "slow")
+    assert now.trials.varied["x_day"][-2:] == ("", "2")
+    *after, _ = (folder / "trials.csv").read_text().splitlines()
+    assert all(x.startswith(y) for x, y in zip(after, before.splitlines(), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("trial,striker,angle_deg,impact_speed_m_s\nnew,nobody,90,1\n", "no striker 'nobody'"),
+        ("trial,striker,angle_deg,impact_speed_m_s\n{first},{striker},90,1\n", "set already"),
+        ("trial,striker,angle_deg,impact_speed_m_s,e\nnew,{striker},90,1,.5\n", "column e"),
+        ("trial,striker,angle_deg,impact_speed_m_s\nnew,{striker},90,-1\n", "row 2"),
+        ("trial,striker,angle_deg\nnew,{striker},90\n", "no approach"),
+    ],
+)
+def test_what_does_not_fit_is_refused_and_nothing_is_written(folder, text, told):
+    before = (folder / "trials.csv").read_bytes()
+    trials = read(folder).trials
+    path = rows(folder, text.format(first=trials.trial[0], striker=trials.striker[0]))
+    with pytest.raises(InputErrors, match=told) as raised:
+        add_trials(folder, path)
+    assert "rows.csv" in str(raised.value)
+    assert (folder / "trials.csv").read_bytes() == before
+
+
+def test_two_at_once_lose_nothing(folder):
+    striker = read(folder).trials.striker[0]
+    n = len(read(folder).trials)
+    busy = []
+    for k in range(3):
+        path = folder.parent / f"{k}.csv"
+        path.write_text(f"{HEAD}\np{k},{striker},90,1,0.7,0.01\n")
+        code = (
+            "from pathlib import Path; from dentscope.recordings.adding import add_trials; "
+            f"add_trials(Path({str(folder)!r}), Path({str(path)!r}))"
+        )
+        busy.append(subprocess.Popen([sys.executable, "-c", code]))
+    assert [process.wait(60) for process in busy] == [0, 0, 0]
+    assert len(read(folder).trials) == n + 3
