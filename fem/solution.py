@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -212,11 +212,11 @@ class Solution:
     problem: ContactProblem
     accuracy: Accuracy
     outcome: Outcome
-    loading: Curve
-    unloadings: tuple[Unloading, ...]
-    snapshots: tuple[Snapshot, ...]
+    loading: Curve = field(repr=False)
+    unloadings: tuple[Unloading, ...] = field(repr=False)
+    snapshots: tuple[Snapshot, ...] = field(repr=False)
     counters: Counters
     mesh_digest: str
-    profiles: tuple[Profile, ...] = ()
+    profiles: tuple[Profile, ...] = field(default=(), repr=False)
     boundary: str = "top face moves by -Delta, free radially"
     yield_measure: str = "Cauchy"
