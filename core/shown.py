@@ -32,7 +32,9 @@ class ShownFigure(Figure):  # type: ignore[misc]
         window: Any = pyplot.figure()
         if matplotlib.get_backend().lower() == "agg":
             pyplot.close(window)
-            raise InputError("no screen", key="show", allowed='savefig("NAME.png") in its place')
+            raise InputError(
+                "no screen", key="show", allowed="a screen, or savefig with a file's name"
+            )
         manager = window.canvas.manager
         manager.canvas.figure = self
         self.set_canvas(manager.canvas)
