@@ -28,7 +28,7 @@ WORDS = {
     "m/s/s": "m/s2", "m/s**2": "m/s2", "m/sec2": "m/s2", "m/sec^2": "m/s2", "ms-2": "m/s2",
     "m s-2": "m/s2", "m s^-2": "m/s2", "m*s^-2": "m/s2", "m·s⁻²": "m/s2", "m s⁻²": "m/s2",
     "n/mm²": "N/mm2", "n/mm^2": "N/mm2", "lbs.": "lbf", "in.": "in", "s⁻¹": "1/s",
-    "毫米": "mm", "厘米": "cm", "微米": "um", "米": "m", "毫秒": "ms", "微秒": "us", "秒": "s", 
+    "毫米": "mm", "厘米": "cm", "微米": "um", "米": "m", "毫秒": "ms", "微秒": "us", "秒": "s",
     "牛": "N", "千牛": "kN", "克": "g", "千克": "kg", "米/秒": "m/s", "度": "deg", "sek": "s",
 }  # fmt: skip
 """Units in words, as they are written in a recording set."""
