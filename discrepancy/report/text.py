@@ -27,7 +27,18 @@ _NAMED_LEADING = 3
 
 
 def headline(v: Verdict) -> str:
-    """Return the finding in one sentence, with its probability."""
+    """Return the finding in one sentence, with its probability; and what comes before any physics.
+
+    Numbers of the set that contradict each other are named.
+    """
+    checks = [a["check"] for a in v.audit if a["message"].startswith("contradiction")]
+    if not checks:
+        return _finding(v)
+    contradicted = f"But the set's numbers contradict each other ({joined(checks)})"
+    return f"{_finding(v)} {contradicted}: settle that first."
+
+
+def _finding(v: Verdict) -> str:
     part = v.inclusion
     if v.verdict == "adequate":
         p = v.probabilities.get("baseline", math.nan)

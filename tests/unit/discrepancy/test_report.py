@@ -30,15 +30,28 @@ def miss(z: float) -> Miss:
 
 
 def said(
-    verdict: str, nothing: float, located: Located, *, rest: float = 0.0, reasons: Any = ()
-) -> Any:
+    verdict: str, nothing: float, located: Located, *, rest: float = 0.0, reasons: Any = (),
+    audit: Any = (),
+) -> Any:  # fmt: skip
     return SimpleNamespace(
         verdict=verdict, located=located, reasons=reasons, inclusion={},
         probabilities={"baseline": nothing, "work-hardening": 1.0 - nothing},
         misfit={"as_stated": 650.0, "numbers": 40.0, "rest": rest},
-        choice=SimpleNamespace(alike=(), family=None), wrong_inputs=(),
+        choice=SimpleNamespace(alike=(), family=None), wrong_inputs=(), audit=audit,
         titles={m.name: m.title for m in MECHANISMS} | OWN,
     )  # fmt: skip
+
+
+def test_what_the_sheet_contradicts_itself_in_is_said_with_the_finding() -> None:
+    rows = [
+        {"check": "mass of rod", "message": "contradiction: mass of rod: 0.25 kg stated"},
+        {"check": "force", "message": "caution: force: too large"},
+    ]
+    told = headline(said("adequate", 0.9, Located((), (), 3.0), audit=rows))
+    assert told.startswith("Nothing is missing")
+    assert told.endswith(
+        "But the set's numbers contradict each other (mass of rod): settle that first."
+    )
 
 
 def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: Any) -> None:
