@@ -93,7 +93,7 @@ IMPACT = (
     Use("recordings check kharaz-2001-oblique", "12 trials"),
     Use("recordings audit thesis-chapter-5", "thesis-chapter-5"),
     Use("recordings new set", "fill in"),
-    Use("recordings add kharaz-2001-oblique absent.csv", "absent.csv", 2),
+    Use("recordings add {data}/recordings/kharaz-2001-oblique absent.csv", "absent.csv", 2),
     Use("recordings fetch absent", "absent", 2),
     Use("materials steel-1010-hot-rolled", "207"),
     Use("metal kharaz-2001-oblique --out metal", "elastic-plastic", 2),

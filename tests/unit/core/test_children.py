@@ -92,6 +92,7 @@ impact ball.toml --law hertz --exact --out o|case --new|case none.toml
 laws compare case.toml --law hertz --out o2|export law fitted
 export dem case.toml --speed 1 --out o3|inverse --new|inverse inverse.toml --out o4|examples --to ex
 recordings list|recordings new mine --sphere|recordings check kharaz-2001-oblique
+recordings add mine none.csv
 recordings audit kharaz-2001-oblique|recordings fetch nosuch
 reduce table pulse.csv --holds force --mass-kg 1 --out r1
 reduce video pulse.csv --frame-rate-hz 1000 --shape sphere --out r2|reduce sound pulse.csv --out r3

@@ -8,8 +8,8 @@ import pytest
 from dentscope.cli import run
 from dentscope.core.errors import InputError, InputErrors
 from dentscope.recordings import read
+from dentscope.recordings.recording_set import read_as
 from dentscope.reduce.images.clip import read_clip
-from dentscope.reduce.output.into_set import _read_as
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.tension import reduce_tension
 
@@ -260,7 +260,7 @@ def test_many_mistakes_of_the_set_that_a_reduction_would_write_are_many_lines(tm
     """A set whose own files are wrong, each mistake by a line of its own that names the folder."""
     text = 'format = "recording-set/1"\nname = "a"\n[target]\nE_Pa = 2\nnu = 0.7\n'
     with pytest.raises(InputErrors) as caught:
-        _read_as(tmp_path / "set", {"set.toml": text, "trials.csv": "trial\n"})
+        read_as(tmp_path / "set", {"set.toml": text, "trials.csv": "trial\n"}, unfinished=True)
     lines = str(caught.value).splitlines()
     assert len(lines) >= 2
     assert all(line.startswith(str(tmp_path / "set")) for line in lines)
