@@ -97,6 +97,9 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
     shown, between = console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
+    for row in rows:
+        for name in row.left_out:
+            say(row.without(name))
     if not (ball.pair.perfectly_plastic or follows_flow(chosen)):
         say(f"{chosen.name} takes the first strength of each metal, not its flow curve")
     if ball.aside:

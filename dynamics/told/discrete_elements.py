@@ -18,7 +18,9 @@ S. Luding, Granular Matter 10 (2008) 235.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
+from types import MappingProxyType
 from typing import NamedTuple
 
 from ...core.errors import InputError
@@ -37,6 +39,8 @@ from .collisions import (
     entered_for,
     stiffness_for,
 )
+
+SOFTENED = "hertz-tsuji-softened"
 
 
 class Substitute(NamedTuple):
@@ -71,10 +75,15 @@ class ExportedRow(NamedTuple):
 
     law: ExportedBlow
     substitutes: tuple[Substitute, ...]
+    left_out: Mapping[str, str] = MappingProxyType({})  # why, by the name of what cannot do it
 
-    def named(self, name: str) -> Substitute:
-        """Return one of the substitutes."""
-        return next(s for s in self.substitutes if s.name == name)
+    def named(self, name: str) -> Substitute | None:
+        """Return one of the substitutes; none: it is left out."""
+        return next((s for s in self.substitutes if s.name == name), None)
+
+    def without(self, name: str) -> str:
+        """Say at which speed something is left out, and why."""
+        return f"{self.law.speed:g} m/s: no {name}: {self.left_out[name]}"
 
 
 def substitutes(
@@ -106,7 +115,7 @@ def substitutes(
         )
         if not blow.restitution > 0.0:
             raise InputError(f"nothing comes back at {speed:g} m/s", key="speed")
-        rows.append(ExportedRow(blow, _of(blow, pair, mass)))
+        rows.append(_row(blow, pair, mass))
     return rows
 
 
@@ -118,16 +127,36 @@ def ball_scene(law: ContactLaw, pair: Pair, *, mass: float, speed: float) -> Sce
     )  # fmt: skip
 
 
-def _of(blow: ExportedBlow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
+def _row(blow: ExportedBlow, pair: Pair, mass: float) -> ExportedRow:
+    """The substitutes of a blow; a damping that cannot take so much is left out with its laws."""
+    found: list[Substitute] = []
+    left_out: dict[str, str] = {}
+    for names, make in (
+        (("hertz-tsuji", SOFTENED), _hertz),
+        (("linear-hysteretic",), _hysteretic),
+        ((DASHPOT.name,), partial(_straight, DASHPOT)),
+        ((HUNT.name,), partial(_straight, HUNT)),
+    ):
+        try:
+            found += make(blow, pair, mass)
+        except InputError as error:
+            left_out |= dict.fromkeys(names, str(error))
+    return ExportedRow(blow, tuple(found), left_out)
+
+
+def _hertz(blow: ExportedBlow, pair: Pair, mass: float) -> list[Substitute]:
     own = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R)
     damping, soft = _as_deep(TSUJI, blow, mass)
     entered = entered_for(damping)
-    hertz = [
+    return [
         Substitute(
             name, k, math.nan, entered, math.nan, blow_on(TSUJI, k, damping, mass, blow.speed)
         )
-        for name, k in (("hertz-tsuji", own), ("hertz-tsuji-softened", soft))
+        for name, k in (("hertz-tsuji", own), (SOFTENED, soft))
     ]
+
+
+def _hysteretic(blow: ExportedBlow, _: Pair, mass: float) -> list[Substitute]:
     first = mass * (blow.speed / blow.depth) ** 2
     second = first / blow.restitution**2
     quarter = 0.5 * math.pi * math.sqrt(mass)
@@ -135,14 +164,14 @@ def _of(blow: ExportedBlow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
         blow.speed, blow.depth, first * blow.depth,
         quarter * (first**-0.5 + second**-0.5), blow.restitution,
     )  # fmt: skip
-    hysteretic = Substitute("linear-hysteretic", first, second, math.nan, math.nan, linear)
-    straight = []
-    for damped in (DASHPOT, HUNT):
-        c, k = _as_deep(damped, blow, mass)
-        with_unit = c * math.sqrt(mass * k) if damped is DASHPOT else c / blow.speed
-        found = blow_on(damped, k, c, mass, blow.speed)
-        straight.append(Substitute(damped.name, k, math.nan, math.nan, with_unit, found))
-    return (*hertz, hysteretic, *straight)
+    return [Substitute("linear-hysteretic", first, second, math.nan, math.nan, linear)]
+
+
+def _straight(damped: Damped, blow: ExportedBlow, _: Pair, mass: float) -> list[Substitute]:
+    c, k = _as_deep(damped, blow, mass)
+    with_unit = c * math.sqrt(mass * k) if damped is DASHPOT else c / blow.speed
+    found = blow_on(damped, k, c, mass, blow.speed)
+    return [Substitute(damped.name, k, math.nan, math.nan, with_unit, found)]
 
 
 def _as_deep(damped: Damped, blow: ExportedBlow, mass: float) -> tuple[float, float]:
@@ -234,21 +263,25 @@ def lammps_lines(
         f"# tangential: {_tangential_told(friction)}",
     ]
     for k, row in enumerate(rows):
-        law = _lammps(row, pair, friction)
+        speed = f"{row.law.speed:g} m/s"
         if spheres:
-            lines += [f"# {row.law.speed:g} m/s: {_told(row)}", f"pair_coeff 1 2 {law}"]
+            lines += _block(row, pair, friction, "pair_coeff 1 2 {}", speed)
             continue
-        lines.append(f"# {row.law.speed:g} m/s, the flat: {_told(row)}")
-        lines.append(f"fix flat all wall/gran granular {law} zplane 0.0 NULL")
+        wall = "fix flat all wall/gran granular {} zplane 0.0 NULL"
+        lines += _block(row, pair, friction, wall, f"{speed}, the flat")
         if of_balls:
             balls, _ = two_balls(pair, 1.0)
-            lines.append(f"# {row.law.speed:g} m/s, two balls: {_told(of_balls[k])}")
-            lines.append(f"pair_coeff * * {_lammps(of_balls[k], balls, friction)}")
+            where = f"{speed}, two balls"
+            lines += _block(of_balls[k], balls, friction, "pair_coeff * * {}", where)
     return "\n".join(lines) + "\n"
 
 
-def _told(row: ExportedRow) -> str:
-    return row.substitutes[1].told(row.law)
+def _block(row: ExportedRow, pair: Pair, friction: float, line: str, where: str) -> list[str]:
+    """What the softened law misses, and its line; or why there is none."""
+    own, soft = row.named("hertz-tsuji"), row.named(SOFTENED)
+    if own is None or soft is None:
+        return [f"# {row.without(SOFTENED)}"]
+    return [f"# {where}: {soft.told(row.law)}", line.format(_lammps(own, soft, pair, friction))]
 
 
 def _tangential_told(friction: float) -> str:
@@ -260,8 +293,7 @@ def _tangential_told(friction: float) -> str:
     return "none, for the file states no friction.coefficient"
 
 
-def _lammps(row: ExportedRow, pair: Pair, friction: float) -> str:
-    own, soft, *_ = row.substitutes
+def _lammps(own: Substitute, soft: Substitute, pair: Pair, friction: float) -> str:
     # LAMMPS multiplies by the root of the effective radius
     k = soft.stiffness / math.sqrt(pair.R)
     tangential = "linear_nohistory 0.0 0.0"

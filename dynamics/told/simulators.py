@@ -46,6 +46,9 @@ def mujoco_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     ]
     for row in rows:
         s = row.named(DASHPOT.name)
+        if s is None:
+            lines.append(f"  <!-- {row.without(DASHPOT.name)} -->")
+            continue
         k, b = s.stiffness / contact.mass, s.damping / contact.mass
         lines += [
             f"  <!-- {_told(row, s)} -->",
@@ -116,7 +119,7 @@ def _each(
     lines = [head]
     for row in rows:
         s = row.named(name)
-        lines += [f"# {_told(row, s)}", line(s)]
+        lines += [f"# {row.without(name)}"] if s is None else [f"# {_told(row, s)}", line(s)]
     return "\n".join(lines) + "\n"
 
 

@@ -63,6 +63,19 @@ def test_a_restitution_below_what_the_damping_can_do_is_one_line():
         damping_for(TSUJI, 1e-3)
 
 
+def test_a_damping_that_cannot_is_left_out_and_the_others_get_theirs():
+    soft = Material(E=200e9, nu=0.3, Sy=6e6, density=7800.0)
+    (row,) = substitutes(LAWS["fitted"], Pair(soft, HARD, 5e-3), mass=MASS, speeds=[30.0])
+    assert row.law.restitution < 0.11
+    assert set(row.left_out) == {"hertz-tsuji", "hertz-tsuji-softened"}
+    assert [s.name for s in row.substitutes] == [
+        "linear-hysteretic", "spring-dashpot", "hunt-crossley"
+    ]  # fmt: skip
+    text = lammps_lines([row], PAIR)
+    assert "# 30 m/s: no hertz-tsuji-softened: restitution: " in text
+    assert "fix flat" not in text.partition("# 30 m/s")[2]
+
+
 def test_command_writes_table_and_fragments(tmp_path, capsys):
     file = tmp_path / "pair.toml"
     file.write_text(
