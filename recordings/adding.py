@@ -34,6 +34,7 @@ def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]
     InputErrors
         Every mistake of the rows, each by file, row and column; nothing is written then.
     """
+    read(folder)  # a lock would make the folders around a set that is not there
     # another process may add to the same set: neither's rows must be lost
     with locked(folder):
         before = read(folder)

@@ -7,7 +7,7 @@ from shutil import copytree
 
 import pytest
 from dentscope.cli import run
-from dentscope.core import InputErrors
+from dentscope.core import InputError, InputErrors
 from dentscope.recordings import read
 from dentscope.recordings.adding import add_trials
 from dentscope.recordings.shipped import set_folder
@@ -59,6 +59,12 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(folder, text, told)
         add_trials(folder, path)
     assert "rows.csv" in str(raised.value)
     assert (folder / "trials.csv").read_bytes() == before
+
+
+def test_no_folder_is_made_around_a_set_that_is_not_there(tmp_path):
+    with pytest.raises(InputError, match="no such folder"):
+        add_trials(tmp_path / "a" / "b", rows(tmp_path / "set", "trial\n"))
+    assert not (tmp_path / "a").exists()
 
 
 def test_two_at_once_lose_nothing(folder):
