@@ -13,7 +13,7 @@ from .factors import backward, forward
 _FAST = {"contract", "reassoc"}
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _precondition(v, out, single, known):
     """Solution by the factors for a vector of the order of one."""
     start, rows, begin, factors, sums = known
@@ -25,7 +25,7 @@ def _precondition(v, out, single, known):
         out[i] = single[i]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _product(matrix, x, y):
     """Product of the matrix, (indptr, indices, data) by columns, and a vector."""
     indptr, indices, data = matrix
@@ -36,7 +36,7 @@ def _product(matrix, x, y):
             y[indices[p]] += data[p] * a
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _dot(x, y):
     total = 0.0
     for i in range(x.shape[0]):
@@ -44,7 +44,7 @@ def _dot(x, y):
     return total
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _rotated(H, c, s, g, k, below):
     """Make column k of H triangular by Givens's rotations; what is left of the right-hand side."""
     for i in range(k):
@@ -59,7 +59,7 @@ def _rotated(H, c, s, g, k, below):
     return abs(g[k + 1])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _solve_upper(H, g, k):
     """Solve the triangle that the rotations left, in place."""
     for i in range(k - 1, -1, -1):
@@ -68,7 +68,7 @@ def _solve_upper(H, g, k):
         g[i] /= H[i, i]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _left_over(product, rhs):
     """Sum of the residual over that of the right-hand side."""
     left, size = 0.0, 0.0
@@ -78,7 +78,7 @@ def _left_over(product, rhs):
     return left / size
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def gmres(matrix, rhs, known, room, rtol, most):
     """Solve K x = rhs by steps of Gram and Schmidt.
 

@@ -298,7 +298,7 @@ def problem_of(
         )  # fmt: skip
     later = sum(c.after >= 0 for c in conditions)
     blows = [f"{later} conditions are later blows on one place: they meet its crater"] * bool(later)
-    assumed = [n.note for n in nuisances if n.note]
+    assumed = [*_acting(problem), *(n.note for n in nuisances if n.note)]
     notes = (*recordings.notes, *told, *blows, *assumed, *unread, *again.values(), *seen.notes)
     return replace(
         problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
@@ -318,6 +318,11 @@ def _with_assumed(problem: Problem, names: Iterable[str], stated: Sequence[Scene
                 f"{name}: {why}", source=problem.name, key="assume", allowed=", ".join(known)
             )
     return replace(problem, assumed=tuple(known[name] for name in names))
+
+
+def _acting(problem: Problem) -> list[str]:
+    size = "taken to act, at its stated or published size"
+    return [f"{size}: {m.title} ({m.name})" for m in problem.assumed]
 
 
 def _sized(m: Mechanism, around: Surroundings) -> bool:

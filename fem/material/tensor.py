@@ -1,4 +1,4 @@
-"""Axisymmetric tensors at a material point: norms, principal axes, logarithm and exponential.
+"""Axisymmetric tensors at a material point: products, principal axes, logarithm and exponential.
 
 Components are ordered (rr, rz, zr, zz, tt) for a deformation gradient and (rr, zz, rz, tt) for a
 symmetric tensor.
@@ -15,12 +15,6 @@ from numba import njit
 def dot(a, b):
     """Double contraction of two symmetric tensors."""
     return a[0] * b[0] + a[1] * b[1] + a[3] * b[3] + 2.0 * a[2] * b[2]
-
-
-@njit(cache=True)
-def norm(a):
-    """Frobenius norm of a symmetric tensor."""
-    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[3] * a[3] + 2.0 * a[2] * a[2])
 
 
 @njit(cache=True)

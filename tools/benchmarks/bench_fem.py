@@ -68,7 +68,7 @@ def main() -> None:
         ("SuperLU factorisation", seconds(lambda: superlu(matrix))),
         ("SuperLU solve", seconds(lambda: factors(rhs))),
         ("multifrontal factorisation", seconds(lambda: fronts.factorise(matrix.data))),
-        ("multifrontal solve", seconds(lambda: fronts.solve(rhs))),
+        ("GMRES with these factors", seconds(lambda: solver.system._iterate(rhs))),
         ("scikit-fem's plane linear elasticity form", plain),
     ):
         print(f"{name:42}{1e3 * value:8.2f} ms, {value / loop:6.2f} of the element loop")

@@ -85,3 +85,14 @@ def test_a_zero_pivot_is_told() -> None:
     matrix = in_postorder(grid(5, 5, np.random.default_rng(1)))
     matrix.data[:] = 0.0
     assert not fronts_of(matrix).factorise(matrix.data)
+
+
+def test_where_gmres_breaks_down_its_steps_were_not_enough() -> None:
+    """Of a matrix of noughts nothing is left after a step; who asks turns to SuperLU."""
+    matrix = in_postorder(grid(5, 5, np.random.default_rng(1)))
+    fronts, n = fronts_of(matrix), matrix.shape[0]
+    assert fronts.factorise(matrix.data)
+    room = (np.empty(n, np.float32), np.empty(n), np.empty((13, n)), np.empty(n))
+    parts = (matrix.indptr, matrix.indices.view(np.uint32), np.zeros_like(matrix.data))
+    steps, _ = gmres(parts, np.ones(n), fronts.known, room, 1e-3, 12)
+    assert steps < 0

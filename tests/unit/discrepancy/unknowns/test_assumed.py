@@ -23,6 +23,9 @@ def test_what_is_assumed_is_predicted_and_no_hypothesis() -> None:
         )
         for names in ((), ("half-space-waves",))
     )
+    assert [n for n in assumed.problem.notes if n not in plain.problem.notes] == [
+        f"taken to act, at its stated or published size: {WAVES.title} (half-space-waves)"
+    ]
     z = np.zeros(plain.problem.n_z)
     published = {"half-space-waves": WAVES.published(plain.problem.conditions[0].around)}
     acts = plain.predict((WAVES,), [Point(z, published)])[0]
