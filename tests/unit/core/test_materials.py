@@ -52,12 +52,42 @@ def test_every_entry_makes_a_body_that_files_accept(name):
             parse_model(law, table, source="a file")
 
 
-def test_strength_and_hardness_of_the_wrought_aluminium_alloys_agree_as_tabor_has_it():
-    """H is 2.8 to 3.3 times the stress at 8 % strain, so 2.8 Sy at least (Tabor 1951)."""
+CLASSES = {
+    "carbon steel": ((195, 213), (0.28, 0.30), (7830, 7900)),
+    "alloy steel": ((195, 213), (0.28, 0.33), (7800, 7900)),
+    "stainless steel": ((186, 205), (0.27, 0.31), (7650, 8030)),
+    "tool steel": ((200, 225), (0.28, 0.30), (7650, 8200)),
+    "bearing steel": ((198, 213), (0.28, 0.31), (7600, 7880)),
+    "cast iron": ((155, 185), (0.26, 0.29), (7000, 7300)),
+    "iron": ((200, 215), (0.28, 0.30), (7800, 7900)),
+    "aluminium": ((68, 75), (0.32, 0.34), (2640, 2850)),
+    "copper": ((110, 155), (0.27, 0.36), (8200, 9000)),
+    "brass": ((95, 115), (0.30, 0.36), (8300, 8800)),
+    "bronze": ((95, 122), (0.30, 0.36), (7400, 9000)),
+    "nickel": ((170, 215), (0.27, 0.33), (8100, 9000)),
+    "titanium": ((102, 120), (0.30, 0.37), (4400, 4550)),
+    "tungsten": ((300, 415), (0.27, 0.30), (16500, 19350)),
+    "polymer": ((0.4, 4.5), (0.35, 0.47), (890, 2250)),
+    "hard material": ((60, 660), (0.1, 0.32), (2150, 15700)),
+}
+"""Modulus [GPa], Poisson's ratio and density [kg/m3] of a class (bounds of Ashby's charts)."""
+
+
+def test_every_entry_is_a_body_of_its_class():
     for entry in materials().values():
-        if entry.kind == "aluminium" and {"Sy_Pa", "hardness_Pa"} <= set(entry.numbers):
-            ratio = entry.numbers["hardness_Pa"]["value"] / entry.numbers["Sy_Pa"]["value"]
-            assert 2.5 < ratio < 8.0, entry.name
+        E, nu, density, Sy, H = (
+            entry.numbers.get(key, {"value": None})["value"]
+            for key in ("E_Pa", "nu", "density_kg_m3", "Sy_Pa", "hardness_Pa")
+        )
+        for value, (least, most) in zip(
+            (E / 1e9, nu, density), CLASSES.get(entry.kind, ()), strict=False
+        ):
+            assert least <= value <= most, (entry.name, value)
+        # 2.5: Brinell's number over the yield strength of a metal that no longer hardens; 8: of
+        # one that hardens from rest (Tabor 1951: 2.8 to 3.3 times the stress at 8 % strain)
+        assert Sy is None or H is None or 2.5 < H / Sy < 8.0, entry.name
+        # of soft annealed metals, to glassy polymers and glass
+        assert 5e-5 < (Sy or H / 2.8) / E < 0.05, entry.name
 
 
 def test_a_stated_value_goes_first():
