@@ -95,10 +95,8 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     yield "blind-sets", digest(sets), "the proof's generators, secret seeds", DRAWN
     figures = of_folder("docs/thesis", ".png", ".md")
     yield "docs/thesis", digest(figures), drawn, "dentscope figures"
-    for name in ("base_laws.json", "explicit_impacts.h5"):
-        made = "the solver" if name.startswith("base") else "elements of the proof's own"
-        command = "dentscope proof laws" if name.startswith("base") else "dentscope proof library"
-        yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
+    laws = digest([ROOT / "data" / "proof" / "base_laws.json"])
+    yield "proof/base_laws.json", laws, "the solver", "dentscope proof laws"
     for name, (made, command) in PROOFS.items():
         yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
     runs = ROOT / "data" / "proof" / "runs.json"

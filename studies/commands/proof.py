@@ -117,10 +117,9 @@ def page() -> None:
 
 def _write_page(runs: list[dict[str, object]]) -> None:
     from ..proof import page as pages
-    from ..proof.explicit.catalogue import stored
     from ..proof.run import ROOT
 
-    pages.publish(runs, ROOT / "docs", impacts=stored())
+    pages.publish(runs, ROOT / "docs")
 
 
 @app.command()
@@ -202,15 +201,6 @@ def interventions(
         typer.echo(f"{told.pair:<14} {told.side:<8} {mark:<9} {told.said}")
     write_page(pairs, outcomes())
     typer.echo(counted(pairs, outcomes()))
-
-
-@app.command()
-def library() -> None:
-    """Compute the finite-element impacts that the library lacks."""
-    from ..proof.explicit.catalogue import fill
-
-    for line in fill():
-        typer.echo(line)
 
 
 @app.command()

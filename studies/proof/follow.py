@@ -64,7 +64,6 @@ def open_questions(cases: list[Case]) -> list[Case]:
         and next_of(c).get("kind") == "trial"
         and c.truth["bench"] not in _APART
         and "mass_factor" not in c.truth
-        and c.truth["family"] != "explicit"
         and entropy(c.verdict) > _LEAST
     ]
 

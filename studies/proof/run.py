@@ -24,8 +24,6 @@ from typing import Any
 from ...core.errors import InputError
 from ...core.processes.children import die_with, keep_current_folder_out
 from .apart import answer
-from .explicit.catalogue import SERIES
-from .explicit.sets import draw_explicit, write_explicit
 from .generators.folder import write_set
 from .generators.truth import Truth, draw
 from .lists import LISTS, Entry, seed_of, shuffled
@@ -48,11 +46,7 @@ def verdicts_of(run: Path) -> int:
 
 def draw_entry(tree: str, entry: Entry) -> Truth:
     """The concealed case of one entry."""
-    rng = seed_of(tree, entry)
-    if entry.series:
-        series = next(s for s in SERIES if s.name == entry.series)
-        return draw_explicit(rng, series)
-    return draw(rng, entry.kind, name=entry.effect)
+    return draw(seed_of(tree, entry), entry.kind, name=entry.effect)
 
 
 def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
@@ -68,8 +62,7 @@ def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
         (run / place).mkdir(parents=True, exist_ok=True)
     folder = run / "sets" / entry.name
     shutil.rmtree(folder, ignore_errors=True)
-    write = write_explicit if entry.series else write_set
-    write(truth, folder, name=entry.name)
+    write_set(truth, folder, name=entry.name)
     record = truth.record() | {"salt": secrets.token_hex(16), "tree": tree}
     path = run / "truths" / f"{entry.name}.json"
     path.write_text(json.dumps(record, indent=1) + "\n")

@@ -1,4 +1,4 @@
-"""The two fast base laws, fitted pair by pair to quasi-static finite elements.
+"""The two base laws, fitted pair by pair to quasi-static finite elements.
 
 Each hard striker on each soft flat of the benches is solved once; the constants of the expanding-
 cavity dent (`cavity`) and of the row of springs (`foundation`) are fitted to its force, to its

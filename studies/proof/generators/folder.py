@@ -27,7 +27,7 @@ _RELEASE, _SPEED_READING = 0.01, 0.002
 
 
 def write_set(truth: Truth, folder: Path, *, name: str) -> None:
-    """Simulate a case of a fast family and write its recording set.
+    """Simulate a case of a family and write its recording set.
 
     Parameters
     ----------

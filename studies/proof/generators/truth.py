@@ -71,7 +71,7 @@ class Truth:
         Size of each effect, less what the numbers of others imitate; outside the library, less
         what that imitates.
     family
-        Base law: `cavity`, `foundation` or `explicit`.
+        Base law: `cavity` or `foundation`.
     z
         Nuisances in stated standard deviations.
     instrument
@@ -121,13 +121,13 @@ class Truth:
 
 
 FAMILIES = {"cavity": CAVITY, "foundation": FOUNDATION}
-"""The two fast families and the value of their base law."""
+"""The two families and the value of their base law."""
 
 
 def draw(
     rng: np.random.Generator, kind: str, *, name: str = "", off: bool | None = None, bench: str = ""
 ) -> Truth:
-    """Draw one case of a fast family.
+    """Draw one case of a family.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def test_the_page_of_a_kept_run_has_plan_power_and_rules(tmp_path):
     runs = page.keep(entry, tmp_path / "runs.json")
     assert runs == [entry]
     kept = json.loads((tmp_path / "runs.json").read_text())
-    page.publish(kept, tmp_path, impacts=3)
+    page.publish(kept, tmp_path)
     text = (tmp_path / "proof.md").read_text()
     assert "The [plan](proof-plan.md), SHA-256 `cdcdcdcdcdcd`, was sealed" in text
     row = "| 10 to 20 | 2 | 0.50 (0.01 to 0.99) | 0.00 (0.00 to 0.84) |"

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from dentscope import recordings
-from dentscope.studies.proof.explicit import sets as explicit_sets
 from dentscope.studies.proof.generators import effects, folder, truth
 from dentscope.studies.proof.generators.benches import BENCHES
 
@@ -64,15 +63,6 @@ def test_set_passes_the_reader(tmp_path, kind, name):
     text += (tmp_path / "set-0000" / "trials.csv").read_text()
     for word in [*effects.EFFECTS, *effects.OUTSIDE, "cavity", "foundation"]:
         assert word not in text
-
-
-def test_explicit_set_passes_the_reader(tmp_path):
-    series = explicit_sets.available()[-1]
-    case = explicit_sets.draw_explicit(np.random.default_rng(2), series)
-    explicit_sets.write_explicit(case, tmp_path / "set-0000", name="set-0000")
-    read = recordings.read(tmp_path / "set-0000")
-    assert len(read.trials) == len(case.rig)
-    assert series.name not in (tmp_path / "set-0000" / "set.toml").read_text()
 
 
 def test_same_seed_same_set(tmp_path):

@@ -1,1 +1,0 @@
-"""Impacts computed by an explicit finite-element code of the proof alone."""
