@@ -15,7 +15,14 @@ import numpy as np
 
 from ..core.arrays import Array
 from .case import Case
-from .rules import RULES
+
+# limit: weight of what was measured before against finished cases [cases], for the level,
+# E'/Sy_min and Sy* above and below 1; simulated sweeps (docs/campaign.md, How long it takes)
+_COST_PRIOR = (0.05, 1.0, 1.0, 1.0)
+
+# limit: part of its foreseen time that a case under way still takes, however long it has [-]; by
+# the same sweeps
+_STILL_TO_GO = 0.15
 
 # limit: processor time of a case of each accuracy, for a forecast [s]: published cases
 _COST_BASE_S = (("smoke", 16.0), ("quick", 26.0), ("production", 90.0))
@@ -80,7 +87,7 @@ class Forecast:
     def left_s(self, gone_s: float = 0.0) -> float:
         """Wall time left, `gone_s` seconds after the start [s]."""
         foreseen = [(self.cost_s(case), gone_s - since) for case, since in self._begun.values()]
-        under_way = [max(whole - gone, RULES.still_to_go * whole) for whole, gone in foreseen]
+        under_way = [max(whole - gone, _STILL_TO_GO * whole) for whole, gone in foreseen]
         waiting = [self.cost_s(case) for case in self._waiting.values()]
         both = [*under_way, *waiting]
         return max(sum(both) / self._workers, *both) if both else 0.0
@@ -103,7 +110,7 @@ class Forecast:
         A = np.array([_features(case) for case, _ in self._seen])
         y = np.log([s / self._pace for _, s in self._seen])
         y = y - [_measured(case) for case, _ in self._seen]
-        self._bend = np.linalg.solve(A.T @ A + np.diag(RULES.cost_prior), A.T @ y)
+        self._bend = np.linalg.solve(A.T @ A + np.diag(_COST_PRIOR), A.T @ y)
         self._scatter = min(float((y - A @ self._bend).std()), 0.5)
 
 

@@ -42,17 +42,6 @@ class CampaignRules:
         "part of a single step's height that such a window shows [-]",
         "the cubic follows the rest. The example of `quality.largest_step` plants one",
     )  # fmt: skip
-    cost_prior: tuple[float, float, float, float] = rule(
-        (0.05, 1.0, 1.0, 1.0),
-        "weight of what was measured before against finished cases [cases], for the level, "
-        "E'/Sy_min and Sy* above and below 1",
-        "simulated sweeps (docs/campaign.md, How long it takes)",
-    )  # fmt: skip
-    still_to_go: float = rule(
-        0.15,
-        "part of its foreseen time that a case under way still takes, however long it has [-]",
-        "by the same sweeps",
-    )  # fmt: skip
 
 
 RULES = CampaignRules()

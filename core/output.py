@@ -27,10 +27,11 @@ from typing import TYPE_CHECKING, Any
 from .disk import DISK
 from .errors import InputError
 from .inputs.input_file import read_bytes
-from .rules import RULES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+from .inputs.names import NAME_BYTES
 
 # limit: largest unfinished file that is read again [bytes]: memory of a small machine
 _PENDING_BYTES = 500_000_000
@@ -252,7 +253,7 @@ def _replace(path: Path, data: bytes) -> None:
             raise OSError(errno.EINVAL, "a folder, a pipe or a device")
         mode = stat.S_IMODE(about.st_mode)
     # a name that nobody else has, on whatever machine, and that no killed process left behind
-    draft = path.with_name(f".{path.name[: RULES.name_bytes]}.{os.urandom(8).hex()}.part")
+    draft = path.with_name(f".{path.name[:NAME_BYTES]}.{os.urandom(8).hex()}.part")
     try:
         file = DISK.create(draft, mode)
         try:

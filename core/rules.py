@@ -47,10 +47,6 @@ class CoreRules:
         1e-4, "plastic strain below which a tension test shows none [-]",
         "a twentieth of the proof strain",
     )  # fmt: skip
-    name_bytes: int = rule(
-        200, "longest name that becomes a file's [bytes]",
-        "file systems take 255; what is written beside a trial gets up to 55 more",
-    )  # fmt: skip
     tabor_spread: float = rule(
         0.10, "relative standard deviation of hardness over strength [-]",
         "metals are found between 2.5 and 3.2 (Johnson, Contact Mechanics, 1985, 6.3)",
@@ -58,10 +54,6 @@ class CoreRules:
     hardness_spread: float = rule(
         0.11, "relative standard deviation of a hardness stated without one [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    least_known: float = rule(
-        100.0, "largest standard deviation over a value that is stated [-]",
-        "what is known within e^100 either way is not known: leave it out",
     )  # fmt: skip
     flow_first: float = rule(
         1e-6, "first plastic strain of a written law's table [-]",

@@ -21,6 +21,9 @@ from .rank import Ranking
 from .rules import RULES
 from .unknowns.wrong_number import is_wrong
 
+# limit: deviations of a stated number that a verdict tells [-]; one in twenty
+PULLED = 2.0
+
 
 def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
     """Contradictions and cautions, the contradictions first."""
@@ -117,10 +120,8 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
     surprises = surprises_of(problem, best)
     for i, n in enumerate(problem.nuisances):
         z, surprise = float(best.z[i]), abs(surprises[n.name])
-        if surprise > RULES.pulled:
-            chance = (
-                "" if abs(z) > RULES.pulled else f", {surprise:.1f} times what chance would move it"
-            )
+        if surprise > PULLED:
+            chance = "" if abs(z) > PULLED else f", {surprise:.1f} times what chance would move it"
             wanted = f"{n.at(z):.4g} {n.unit}".removesuffix(" -")
             notes.append(
                 f"{n.name} wants to be {wanted}, {'above' if z > 0 else 'below'} the "

@@ -63,10 +63,6 @@ class DiagnosisRules:
         3, "trials from which a column may be called derived [-]",
         "by chance one in a hundred of three agrees so well",
     )  # fmt: skip
-    curve_apart: float = rule(
-        0.02, "strength stated beside a flow curve's own, over it, from which a note says so [-]",
-        "two digits of a sheet",
-    )  # fmt: skip
     mesh_share: float = rule(
         0.25, "error of the mesh in the metal's own error in force [-]",
         "added in squares it is 3 %",
@@ -122,10 +118,6 @@ class DiagnosisRules:
     smooth: float = rule(
         1.0, "correlation length of what is outside [standard deviations of each covariate]",
         "a trend over the set, not a wiggle from one condition to the next",
-    )  # fmt: skip
-    thinned: int = rule(
-        400, "places of a grid that stand for all [-]",
-        "memory",
     )  # fmt: skip
     second: float = rule(
         3.0, "nats that a second explanation must gain by the linear sum to be fitted [nat]",
@@ -392,10 +384,6 @@ class DiagnosisRules:
         0.1, "step of derivatives [prior deviations]",
         "straight within it",
     )  # fmt: skip
-    metal_rounds: int = rule(
-        10, "rounds of linearising at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     metal_farthest: float = rule(
         2.5, "change within one round [prior deviations]",
         "as far as a response is nearly straight",
@@ -435,10 +423,6 @@ class DiagnosisRules:
     leads: float = rule(
         3.0, "nats from which outliers are judged under the leading mechanism [-]",
         "twenty to one",
-    )  # fmt: skip
-    story_least: float = rule(
-        0.005, "probability from which one has a line [-]",
-        "half a per cent is printed as one",
     )  # fmt: skip
     false_alarms: float = rule(
         1e-3, "part of sets in which a drift, or an effect of a column, is seen by chance [-]",
@@ -507,10 +491,6 @@ class DiagnosisRules:
     null_smooth: float = rule(
         0.01, "part of the approach speed below which friction fades [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    pulled: float = rule(
-        2.0, "deviations of a stated number that a verdict tells [-]",
-        "one in twenty",
     )  # fmt: skip
     assumed_modulus: float = rule(
         2e11, "modulus of a body of which the set says nothing [Pa]",

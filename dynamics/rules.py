@@ -45,17 +45,9 @@ class ImpactRules:
         0.3, "width of a crater's wall over its radius at the least [-]",
         "chosen; a steeper wall catches the tip",
     )  # fmt: skip
-    cells: int = rule(
-        4000, "cells that are tried, halved ones counted [-]",
-        "the smooth laws of this package take 1120 at most",
-    )  # fmt: skip
     gravity_limit: float = rule(
         0.1, "largest work of gravity over that of a branch [-]",
         "the series is cut after its fourth power",
-    )  # fmt: skip
-    energy_shallowest: float = rule(
-        1e-8, "least peak depth that the route answers for [R]",
-        "dust",
     )  # fmt: skip
     table_error: float = rule(
         1e-8,
@@ -71,11 +63,6 @@ class ImpactRules:
         1.0, "largest depth that is tabulated [R]",
         "beyond it a law goes on as Hertz's",
     )  # fmt: skip
-    tables_kept: int = rule(
-        200,
-        "tables that are kept [-]",
-        "memory",
-    )  # fmt: skip
     hertz_error: float = rule(
         0.003, "error of Hertz's force, which leaves out the finite depth [-]",
         "chosen; no measurement is kept",
@@ -83,12 +70,6 @@ class ImpactRules:
     band_step: float = rule(
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    band_steps: int = rule(
-        4000, "most steps of a blow that is made for a band alone [-]",
-        "usual blows take some 200, a vibrating rod 2000; tools/benchmarks/fuzz_keys.py ended in "
-        "no "
-        "30 s with five times that",
     )  # fmt: skip
     largest_error: float = rule(
         1.0, "largest error of a law, of a logarithm [-]",
@@ -107,21 +88,9 @@ class ImpactRules:
         0.4, "strain rate of an indentation over v/a [-]",
         "Tabor 1951",
     )  # fmt: skip
-    mass_off: float = rule(
-        0.01, "departure from a solid sphere's mass that is told [-]",
-        "three digits of a sheet",
-    )  # fmt: skip
     pressure_points: int = rule(
         60, "depths at which the mean pressure is looked at [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    may_matter: float = rule(
-        0.25, "part of the dent that one specimen or the next moves, from which it is told [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    slender: float = rule(
-        3000.0, "length over radius of a rod at most [-]",
-        "up to it round-off moves no frequency by more than 0.5 %",
     )  # fmt: skip
     visible: float = rule(
         5e-4, "smallest change of a speed that motion was ever read with [-]",
@@ -187,10 +156,6 @@ class ImpactRules:
     size_largest: float = rule(
         3e-4, "contact radius beyond which hardness does not depend on size [m]",
         "ten times some tens of um",
-    )  # fmt: skip
-    above_one: float = rule(
-        1.0 + 5e-4, "restitution from which it is told to be above 1 [-]",
-        "half of its last digit shown",
     )  # fmt: skip
 
 

@@ -57,9 +57,10 @@ from .material.lanes import (
     tangents,
 )  # fmt: skip
 from .material.tensor import dot
-from .rules import RULES
 
-_SMALLEST_DETERMINANT = RULES.least_determinant
+# limit: determinant of the deformation gradient below which an element is as good as inverted [-]
+_SMALLEST_DETERMINANT = 0.02
+
 
 _ELASTIC = 1e30  # radius of the yield circle of what never yields
 

@@ -20,6 +20,9 @@ from .elements import State
 from .linear import LinearSystem
 from .rules import RULES
 
+# limit: most iterations of a step [-]
+_ITERATIONS = 18
+
 TOLERANCE = RULES.residual
 """Accepted sum of residual forces over the contact force.
 
@@ -104,7 +107,7 @@ class Solver:
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
         moved, next_move, first = np.inf, np.inf, np.inf
-        for iteration in range(RULES.iterations):
+        for iteration in range(_ITERATIONS):
             if now is None:
                 return None
             if iteration and self._converged(now, next_move, delta):

@@ -17,10 +17,12 @@ from .newton import Equilibrium, Solver
 from .results.measure import Reading, read
 from .rules import RULES
 
+# limit: cuts after which the path ends [-]
+MOST_CUTS = 7
+
 STEP_CUT = RULES.step_cut
 """A failed step is tried again with this fraction of its logarithm."""
 
-MOST_CUTS = RULES.step_cuts
 """So often, then the path ends."""
 
 

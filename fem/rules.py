@@ -11,12 +11,6 @@ from ..core.rules import rule
 class FemRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    least_determinant: float = rule(
-        0.02,
-        "determinant of the deformation gradient below which an element is as good as inverted "
-        "[-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     core_radius: float = rule(
         0.12, "radius of the innermost block over that where the fine zone begins [-]",
         "chosen; no measurement is kept",
@@ -84,10 +78,6 @@ class FemRules:
         0.2, "contact radius beyond which the mesh is changed no more [R]",
         "strains of the order of one: a change drops the force by 1 to 2 %",
     )  # fmt: skip
-    least_strength_hot: float = rule(
-        0.01, "part of the strength that heat leaves at the least [-]",
-        "a metal at its melting point keeps none: keeps the root defined",
-    )  # fmt: skip
     inner_rings: int = rule(
         3, "rings within the innermost block [-]",
         "chosen; no measurement is kept",
@@ -116,10 +106,6 @@ class FemRules:
         "[-]",
         "Newton's corrections fall faster than it is estimated",
     )  # fmt: skip
-    iterations: int = rule(
-        18, "most iterations of a step [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     hopeless_after: int = rule(
         8, "iterations after which a residual that has not halved will not converge [-]",
         "chosen; no measurement is kept",
@@ -134,10 +120,6 @@ class FemRules:
     )  # fmt: skip
     step_cut: float = rule(
         0.4, "part of its logarithm with which a failed step is tried again [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    step_cuts: int = rule(
-        7, "cuts after which the path ends [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     stretch: float = rule(
@@ -175,10 +157,6 @@ class FemRules:
     ripple_prior: float = rule(
         1.0, "weight of a ripple of nothing [steps]",
         "where a step takes the edge half a ring on, a ripple could be anything",
-    )  # fmt: skip
-    unloading_steps: int = rule(
-        60, "most steps of an unloading [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     least_dent: float = rule(
         1e-3, "part of the permanent approach below which a body keeps nothing [-]",

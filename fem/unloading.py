@@ -10,8 +10,10 @@ from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
 from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
 from .problem import ContactProblem
-from .rules import RULES
 from .solution import Curve, Unloading
+
+# limit: most steps of an unloading [-]
+_UNLOADING_STEPS = 60
 
 
 def unload(point: PathPoint, problem: ContactProblem) -> Unloading:
@@ -70,7 +72,7 @@ def _back(point: PathPoint, records: list[Record]) -> tuple[PathPoint, Outcome, 
                 break
             step *= STEP_CUT
         steps += 1
-        if found is None or steps > RULES.unloading_steps:
+        if found is None or steps > _UNLOADING_STEPS:
             stopped = Outcome(
                 Ending.NOT_CONVERGED,
                 f"unloading from Delta/R = {point.delta:.4g} stopped at F/F_m = "

@@ -20,6 +20,9 @@ from .prediction import Prediction, given_back, predict_by
 from .rules import RULES
 from .table import ResidualTable, Table
 
+# limit: most steps of the regression [-]
+_REGRESSION_STEPS = 25
+
 REACHES = np.array([0.9, 2.2, 1.2, 3.0, 4.0])
 
 
@@ -143,7 +146,7 @@ def _descend(rows: _Rows, basis: Array) -> Array:
         return rows.cost(basis @ at) + 0.5 * RULES.shift_prior * float(np.sum(at**2))
 
     best = objective(weights)
-    for _ in range(RULES.regression_steps):
+    for _ in range(_REGRESSION_STEPS):
         matrix, gradient = rows.normal(basis @ weights)
         whole = np.einsum("nm,nkl,np->mkpl", basis, matrix, basis, optimize=True)
         whole = whole.reshape(m * k, m * k)

@@ -39,10 +39,6 @@ class FittingRules:
         4, "of so many depths one is looked at [-]",
         "neighbours say nearly the same",
     )  # fmt: skip
-    regression_steps: int = rule(
-        25, "most steps of the regression [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     farthest_shift: float = rule(
         1.5, "change of a shift in one step [units]",
         "chosen; no measurement is kept",

@@ -7,7 +7,20 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..core.observables import OBSERVABLES
-from .rules import RULES
+
+# limit: largest number of a column without a unit [-]; a restitution written in percent is beyond
+_HIGHEST_RATIO = 20.0
+
+# limit: largest number of a column by its unit [that unit]; beyond it a slip of the unit
+_HIGHEST = {
+    "_rad_s": 1e7,
+    "_m_s": 2e4,
+    "_Ns": 1e6,
+    "_depth_m": 0.1,
+    "_m": 1.0,
+    "_s": 100.0,
+    "_N": 1e10,
+}
 
 Kind = Literal["text", "condition", "observable", "std"]
 
@@ -81,12 +94,11 @@ CONDITIONS: dict[str, Column] = {
 }
 """Columns that describe a trial, in the order in which they are written."""
 
-_HIGHEST = dict(RULES.highest)
 """Largest number that a column may hold, by its end; more is mostly another unit."""
 
 
 def _highest(name: str) -> float:
-    return next((high for end, high in _HIGHEST.items() if name.endswith(end)), RULES.highest_ratio)
+    return next((high for end, high in _HIGHEST.items() if name.endswith(end)), _HIGHEST_RATIO)
 
 
 MEASURED: dict[str, Column] = {

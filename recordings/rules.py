@@ -96,10 +96,6 @@ class RecordingRules:
         0.02, "relative standard deviation of an approach speed stated without one [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    highest_ratio: float = rule(
-        20.0, "largest number of a column without a unit [-]",
-        "a restitution written in percent is beyond",
-    )  # fmt: skip
     repeats: int = rule(
         3, "trials at one condition from which a noise may be taken [-]",
         "two degrees of freedom",
@@ -123,12 +119,6 @@ class RecordingRules:
     restitution_slip: float = rule(
         0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    highest: tuple[tuple[str, float], ...] = rule(
-        (("_rad_s", 1e7), ("_m_s", 2e4), ("_Ns", 1e6), ("_depth_m", 0.1), ("_m", 1.0),
-         ("_s", 100.0), ("_N", 1e10)),
-        "largest number of a column by its unit [that unit]",
-        "beyond it a slip of the unit",
     )  # fmt: skip
 
 

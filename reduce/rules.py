@@ -120,13 +120,6 @@ class ReductionRules:
     longest_contact: float = rule(
         0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",
     )  # fmt: skip
-    largest_number: float = rule(
-        1e20, "largest number of a column or a scan [its unit]",
-        "no record in any unit: a damaged file, or the code of an instrument",
-    )  # fmt: skip
-    farthest_marker: float = rule(
-        1e3, "distance of a marker from the origin [m]", "a stadium: millimetres taken for metres",
-    )  # fmt: skip
     cycle_depth: float = rule(
         0.05, "fall of the load that ends a cycle, in the largest load [-]",
         "partial unloadings take off a third and more (ISO 14577-1); controls swing by 1 %",
@@ -331,10 +324,6 @@ class ReductionRules:
         0.2, "part of the frames that do so before they count as repeated [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    edge_rounds: int = rule(
-        10, "rounds of the fit of an edge at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     edge_settled: float = rule(
         1e-4, "move at which it ends [pixel]",
         "a tenth of the floor of a position",
@@ -354,10 +343,6 @@ class ReductionRules:
     table_bytes: int = rule(
         500_000_000, "largest table of numbers [bytes]",
         "memory of a small machine",
-    )  # fmt: skip
-    mocap_frames: int = rule(
-        10, "frames of a recording at least [-]",
-        "two flights of a parabola each",
     )  # fmt: skip
     motion_settled: float = rule(
         1e-3, "part of the misfit that a step may still promise when it ends [-]",
@@ -393,17 +378,9 @@ class ReductionRules:
         0.01, "second over first extent of a shape below which its markers lie on one line [-]",
         "no turn about it is then read",
     )  # fmt: skip
-    fit_rounds: int = rule(
-        20, "rounds of a fit at most [-]",
-        "it ends by itself",
-    )  # fmt: skip
     sectors: int = rule(
         8, "sectors of a shape that are left out in turn, or in which walls are read [-]",
         "one that is not round shows in their spread",
-    )  # fmt: skip
-    ball_fewest: int = rule(
-        200, "points of a scan of a ball at least [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     bottom_large: float = rule(
         0.75, "larger of two fits at the bottom of a crater, in half-widths [-]",
@@ -416,14 +393,6 @@ class ReductionRules:
     bottom_points: int = rule(
         45, "points of the smaller one at least [-]",
         "three for each of fifteen coefficients",
-    )  # fmt: skip
-    scan_points: int = rule(
-        100, "points of a scan at least [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    scan_step: float = rule(
-        1e-3, "distance of neighbouring points at most [m]",
-        "one reader's format gives 0.3 m for 0.3 um",
     )  # fmt: skip
     foreign: float = rule(
         6.0,
@@ -466,10 +435,6 @@ class ReductionRules:
         (6e-3, 2e-3), "time before and after the steepest rise in which the onset is sought [s]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    lines_above: int = rule(
-        4, "lines above the numbers among which units are looked for [-]",
-        "headers of five oscilloscopes",
-    )  # fmt: skip
     table_rows: int = rule(
         20, "rows of a record against time, of a press or a tensile test, at least [-]",
         "a zero, a turn and a slope of six each",
@@ -493,10 +458,6 @@ class ReductionRules:
     same_height: float = rule(
         0.1, "difference of peaks, in the largest, that are alike [-]",
         "bounces fade",
-    )  # fmt: skip
-    no_metal: tuple[float, float] = rule(
-        (10.0, 1e12), "strain and stress that no metal was measured at [-, Pa]",
-        "a slip of the unit",
     )  # fmt: skip
     elastic_parts: tuple[float, ...] = rule(
         (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06),
@@ -522,10 +483,6 @@ class ReductionRules:
     edge_step: float = rule(
         0.25, "step along an edge [pixel]",
         "a quarter",
-    )  # fmt: skip
-    tip_rounds: int = rule(
-        12, "rounds of the edge and the circle at most [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     lean_frames: int = rule(
         20, "frames from which the lean of a rod is read [-]",

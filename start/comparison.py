@@ -22,10 +22,11 @@ from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
 from .case_file import read_pair
 from .judged import ELASTIC, USABLE, Departure, Reference, judged
-from .rules import RULES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+from .judged import CURVE_POINTS
 
 # limit: laws that are recommended [-]
 _RECOMMENDED = 4
@@ -223,7 +224,7 @@ def _elastic(departures: dict[str, Departure]) -> tuple[str, ...]:
 def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, ...]:
     deepest = last * pair.R
     depth = np.geomspace(
-        min(0.3 * pair.first_yield * pair.R, 1e-2 * deepest), deepest, RULES.curve_points
+        min(0.3 * pair.first_yield * pair.R, 1e-2 * deepest), deepest, CURVE_POINTS
     )
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
     rows: list[LawRow] = []

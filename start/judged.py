@@ -25,6 +25,9 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
+# limit: points of a law's curve [-]; a figure's width
+CURVE_POINTS = 120
+
 # limit: times too little or too much that are not told in times [-]
 _NO_FACTOR = 100.0
 
@@ -236,7 +239,7 @@ def judged(
 
 def _from_elastic(law: ContactLaw, pair: Pair, last: float) -> Departure:
     """How far a law's force is from Hertz's with finite strain added, up to Delta/R = `last`."""
-    depth = pair.R * last * np.geomspace(1e-2, 1.0, RULES.curve_points)
+    depth = pair.R * last * np.geomspace(1e-2, 1.0, CURVE_POINTS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # of metals, none of which yields
         force, judge = law.loading(pair, depth), LAWS["fitted"].loading(pair, depth)

@@ -15,10 +15,6 @@ class StartRules:
         0.9, "part of the largest speed from which conditions are kept out [-]",
         "chosen: they judge what the rest inferred",
     )  # fmt: skip
-    curve_points: int = rule(
-        120, "points of a law's curve [-]",
-        "a figure's width",
-    )  # fmt: skip
     usable: float = rule(
         0.10, "largest departure of a law that may be used [-]",
         "that of a dent whose strength is off by a tenth",

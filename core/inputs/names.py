@@ -9,7 +9,9 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
-from ..rules import RULES
+# limit: longest name that becomes a file's [bytes]; file systems take 255; what is written beside
+# a trial gets up to 55 more
+NAME_BYTES = 200
 
 ALLOWED = "text that can name a file"
 
@@ -25,7 +27,7 @@ def names_a_file(text: str) -> bool:
     [True, False, False, False, False]
     """
     return (
-        0 < len(text.encode(errors="replace")) <= RULES.name_bytes
+        0 < len(text.encode(errors="replace")) <= NAME_BYTES
         and text.isprintable()
         and not _NEVER & set(text)
         and text not in (".", "..")

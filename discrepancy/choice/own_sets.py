@@ -9,8 +9,10 @@ import numpy as np
 from scipy.stats import gamma
 
 from ..inference.fit import Fit
-from ..rules import RULES
 from .thresholds import Nulls
+
+# limit: places of a grid that stand for all [-]; memory
+_THINNED = 400
 
 _LEAST_LOG_P = -700.0  # what a float holds
 
@@ -41,7 +43,7 @@ def fit_test(fitted: Fit, nulls: Nulls) -> FitTest:
     residual = nulls.made_by(fitted)
     if fitted.mechanisms:
         effects = fitted.residual - fitted.residuals
-        effects = effects[:: max(len(effects) // RULES.thinned, 1)]
+        effects = effects[:: max(len(effects) // _THINNED, 1)]
         e = fitted.linear.white(effects)
         ratio = 2.0 * fitted.linear.white(residual) @ e.T - np.sum(e**2, axis=1)
         best = np.argmax(ratio, axis=1)

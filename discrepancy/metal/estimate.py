@@ -38,6 +38,9 @@ from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values, weights
 from .next_mark import TOLD, NextMark, next_mark, with_marks
 
+# limit: rounds of linearising at most [-]
+_METAL_ROUNDS = 10
+
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
 LEVEL = RULES.level
 """Probability of the intervals."""
@@ -316,7 +319,7 @@ class _Fit:
         u, k = self.prior.copy(), self.known
         sd = np.sqrt(np.diag(self.spread))
         far = math.inf
-        for _ in range(RULES.metal_rounds):
+        for _ in range(_METAL_ROUNDS):
             if far > RULES.metal_near:
                 here, J, noise = self.linear(u)
                 self._check_moved(J[:k])

@@ -10,11 +10,11 @@ import numpy as np
 
 from ...core.observables import OBSERVABLES
 from ...dynamics.files.second import second_of
+from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
-from ..rules import RULES
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
-from .text import headline, nowhere, own_parameters, why
+from .text import STORY_LEAST, headline, nowhere, own_parameters, why
 from .wording import (
     compared,
     counted,
@@ -141,12 +141,10 @@ def story_of(v: Verdict) -> Story:
         parts=tuple(
             Bar(f"{title_of(k, v.titles)} ({k})", p)
             for k, p in v.inclusion.items()
-            if p >= RULES.story_least
+            if p >= STORY_LEAST
         ),
         explanations=tuple(
-            Bar(explanation(k, v.titles), p)
-            for k, p in v.probabilities.items()
-            if p >= RULES.story_least
+            Bar(explanation(k, v.titles), p) for k, p in v.probabilities.items() if p >= STORY_LEAST
         ),
         found=_found(v),
         prediction=_prediction(v),
@@ -182,10 +180,10 @@ def _took(v: Verdict, fitted: Fit) -> str:
     names += ["the contact law"] * (len(fitted.z) - len(names))
     far: dict[str, float] = {}
     for name, z in sorted(zip(names, fitted.z, strict=True), key=lambda item: -abs(item[1])):
-        if abs(z) > RULES.pulled:
+        if abs(z) > PULLED:
             far.setdefault(name, float(z))
     told = ", ".join(f"{name} by {z:+.1f}" for name, z in list(far.items())[:_STORY_MOVED])
-    least = f"no input by more than {RULES.pulled:g}"
+    least = f"no input by more than {PULLED:g}"
     return f"chi2 {fitted.chi2:.3g}, for which it moves {told or least} standard deviations"
 
 

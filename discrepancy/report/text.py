@@ -22,6 +22,9 @@ from .wording import (
     title_of,
 )
 
+# limit: probability from which one has a line [-]; half a per cent is printed as one
+STORY_LEAST = 0.005
+
 # limit: explanations that the finding names where nothing is decided [-]: a line
 _NAMED_LEADING = 3
 
@@ -130,9 +133,7 @@ def why(v: Verdict) -> str:
         best += f", with which the readings are {times} as probable as with nothing missing"
         own, nothing = (v.scores[name]["chi2"] for name in (lead, "baseline"))
         best += f" (chi2 {own:.3g} in place of {nothing:.3g}, moved inputs counted)"
-    rivals = [
-        f"{explanation(k, v.titles)} ({percent(q)})" for k, q in others if q >= RULES.story_least
-    ]
+    rivals = [f"{explanation(k, v.titles)} ({percent(q)})" for k, q in others if q >= STORY_LEAST]
     beside = "Nothing else has a share."
     if rivals:
         beside = f"Beside it: {joined(rivals[:_NAMED_LEADING])}."

@@ -12,8 +12,7 @@ from pydantic import Field, field_validator
 
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
-from ...core.rules import RULES as CORE
+from ...core.rig import LEAST_KNOWN, Length, Mass, Positive, Radius, possible_inertia
 from ...core.unstated import unstated_equal
 from ..inverse import INFERRED, Inferred, MeasuredScar, infer
 from ..scene import Striker
@@ -163,7 +162,7 @@ def _deviations(table: _RodTable, measured: MeasuredScar) -> dict[str, float]:
             continue
         ends = []
         for sign in (1.0, 0.0, -1.0):
-            moved = quantity.value * math.exp(min(sign * quantity.relative, CORE.least_known))
+            moved = quantity.value * math.exp(min(sign * quantity.relative, LEAST_KNOWN))
             try:
                 ends.append((sign, infer(table.rod({name: moved}), measured)))
             except InputError:  # at that end the tip would stick: the other one says how far

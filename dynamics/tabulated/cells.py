@@ -21,7 +21,10 @@ from numba import float64, int64, njit
 from ...core.arrays import Array, Mask
 from ...core.errors import COMPLETED, Ending, Outcome
 from ...models.kernel import VECTOR
-from ..rules import RULES
+
+# limit: cells that are tried, halved ones counted [-]; the smooth laws of this package take 1120
+# at most
+MOST_CELLS = 4000
 
 _LOW, _BINS_PER_UNIT, BINS, _CELLS = range(4)
 GUIDE = 4
@@ -32,7 +35,6 @@ _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 _CHECK = np.vander(_BETWEEN, _ORDER, increasing=True)
 _START, _BINS_PER_CELL = 24, 8
 
-MOST_CELLS = RULES.cells
 """Cells that are tried, halved ones counted; the smooth laws of this package take 1120 at most."""
 
 # limit: cells that are tried together [-]

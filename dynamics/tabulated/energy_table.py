@@ -21,11 +21,14 @@ from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from ..rules import RULES
 from .cells import TableCells, cells_of
+from .law_table import TABLES_KEPT
+
+# limit: least peak depth that the route answers for [R]; dust
+SHALLOWEST = 1e-8
 
 ERROR = RULES.table_error
 """Error of the table; restitution and times come out within ten times this of the integral."""
 
-SHALLOWEST = RULES.energy_shallowest
 DEEPEST = FEM.deepest
 """Peak depths over R that the route answers for."""
 
@@ -39,7 +42,6 @@ COLUMNS = RECOVERY_TIME + TERMS
 _LAW = types.FunctionType(LOADING_SIGNATURE)
 _BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
-_KEPT = RULES.tables_kept
 _TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
 
 
@@ -51,7 +53,7 @@ def energy_table(law: ContactLaw, pair: Pair) -> TableCells:
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
     key = (law.name, law.kernels.residual, par.tobytes())
     if key not in _TABLES:
-        if len(_TABLES) >= _KEPT:
+        if len(_TABLES) >= TABLES_KEPT:
             _TABLES.clear()
         _TABLES[key] = _table(law.kernels, par, pair.R)
     return _TABLES[key]

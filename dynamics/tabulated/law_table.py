@@ -38,6 +38,9 @@ from ..bits import bits_of
 from ..rules import RULES
 from .cells import BINS, GUIDE, TableCells, cells_of, column_in
 
+# limit: tables that are kept [-]; memory
+TABLES_KEPT = 200
+
 ERROR = RULES.table_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
 
@@ -47,7 +50,6 @@ DEEPEST = RULES.law_deepest
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
-_KEPT = RULES.tables_kept
 _TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
@@ -147,7 +149,7 @@ class TabulatedLaw(ContactLaw):
         par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
         key = (self.law.name, self.law.kernels.residual, par.tobytes())
         if key not in _TABLES:
-            if len(_TABLES) >= _KEPT:
+            if len(_TABLES) >= TABLES_KEPT:
                 _TABLES.clear()
             _TABLES[key] = _table(self.law, par, pair.R)
         found = _TABLES[key]

@@ -19,7 +19,6 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
-from ...core.rules import RULES as CORE
 from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, follows_flow
@@ -38,6 +37,12 @@ from .onset import largest_mean_pressure
 
 if TYPE_CHECKING:
     from ..files.setup import Setup
+
+from ...core.rig import LEAST_KNOWN
+
+# limit: most steps of a blow that is made for a band alone [-]; usual blows take some 200, a
+# vibrating rod 2000; tools/benchmarks/fuzz_keys.py ended in no 30 s with five times that
+_BAND_STEPS = 4000
 
 LAW, METALS = "contact law", "metal"
 """Names of the parts that are no input."""
@@ -150,7 +155,7 @@ def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impa
     scene = setup.scene(law)
     settings = setup.settings
     if change is not unchanged:
-        steps = min(settings.max_steps, RULES.band_steps)
+        steps = min(settings.max_steps, _BAND_STEPS)
         scene, settings = scene.with_(force=change(scene.force)), replace(settings, max_steps=steps)
     return repeated(setup, scene, settings)
 
@@ -190,7 +195,7 @@ def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup,
 def _moved(quantity: Quantity, by: float) -> float:
     """The value `by` standard deviations off; what is positive stays so."""
     if quantity.value > 0.0:
-        return quantity.value * math.exp(min(by * quantity.relative, CORE.least_known))
+        return quantity.value * math.exp(min(by * quantity.relative, LEAST_KNOWN))
     return quantity.value + by * quantity.std
 
 

@@ -33,6 +33,15 @@ if TYPE_CHECKING:
     from ..columns import Impacts
     from ..files.setup import Setup
 
+# limit: part of the dent that one specimen or the next moves, from which it is told [-]
+_MAY_MATTER = 0.25
+
+# limit: departure from a solid sphere's mass that is told [-]; three digits of a sheet
+_MASS_OFF = 0.01
+
+# limit: restitution from which it is told to be above 1 [-]; half of its last digit shown
+_ABOVE_ONE = 1.0 + 5e-4
+
 # limit: relative effect that is worth a line [-]
 _WORTH_A_LINE = 1e-3
 
@@ -109,7 +118,7 @@ def _either(scene: Scene, found: Impact) -> Iterator[str]:
         except InputError:  # the table of one pair knows no other
             return
         parts.append(sphere / (sphere + flat) if sphere + flat > 0.0 else 0.5)
-    if max(parts) - min(parts) > RULES.may_matter:
+    if max(parts) - min(parts) > _MAY_MATTER:
         yield (
             f"either body may take the dent: {100.0 * min(parts):.0f} to {100.0 * max(parts):.0f} "
             f"% of it is the sphere's where a strength is off by {100.0 * SPECIMENS:.0f} %, as "
@@ -331,7 +340,7 @@ def _mass(key: str, mass: Quantity, radius: float, density: Quantity | None) -> 
     if density is None or radius < 0.0:
         return
     solid = 4.0 / 3.0 * math.pi * radius**3 * density.value
-    if abs(mass.value / solid - 1.0) > RULES.mass_off:
+    if abs(mass.value / solid - 1.0) > _MASS_OFF:
         yield (
             f"{key}: {mass.value:.4g} kg as stated; a solid sphere of its radius and density has "
             f"{solid:.4g} kg"
@@ -378,7 +387,7 @@ _GIVES_BACK = "the law gives back more than it took"
 
 def reason_above_one(scene: Scene, found: Impact) -> str:
     """Say where the energy of a restitution above 1 comes from; empty where it is at most 1."""
-    if not found.restitution > RULES.above_one:
+    if not found.restitution > _ABOVE_ONE:
         return ""
     before, after = found.kinetic_before_J, found.kinetic_after_J
     beside = before - 0.5 * effective_mass(scene) * scene.approach.speed**2
@@ -396,7 +405,7 @@ def reason_above_one(scene: Scene, found: Impact) -> str:
 
 def swept_above_one(swept: Impacts) -> Iterator[str]:
     """Say of a sweep where the energy of restitutions above 1 comes from, a line for each way."""
-    above = swept["restitution"] > RULES.above_one
+    above = swept["restitution"] > _ABOVE_ONE
     made = above & _made_by_the_law(
         swept["kinetic_before_J"], swept["kinetic_after_J"], swept["gravity_work_J"]
     )

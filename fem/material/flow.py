@@ -13,12 +13,14 @@ import numpy as np
 from numba import njit
 
 from ...core.arrays import Array, Integers
-from ..rules import RULES
+
+# limit: part of the strength that heat leaves at the least [-]; a metal at its melting point
+# keeps none: keeps the root defined
+_WEAKEST = 0.01
 
 NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
 
 _ROOT = math.sqrt(2.0 / 3.0)
-_WEAKEST = RULES.least_strength_hot
 # limit: size of the yield circle's radius to which its root is found [-]: ten units of the last
 # digit
 _ROUND_OFF = 3e-15

@@ -18,6 +18,9 @@ from ...core.arrays import Array, Mask
 from ..rules import RULES
 from ..shared.regression import robust_std
 
+# limit: rounds of the fit of an edge at most [-]
+_EDGE_ROUNDS = 10
+
 _POSE = (0, 1, 2, 3, 4, 5, 6)
 _FREE = {"pose": _POSE, "shape": (*_POSE, 7, 8), "mirror": (*_POSE, 9, 10)}
 """Places of the parameters of a rod's picture that a fit moves."""
@@ -186,7 +189,7 @@ def _settle(
     p, moved = start.copy(), list(free)
     covariance = np.zeros((p.size, p.size))
     move = np.full(len(moved), np.inf)
-    for _ in range(RULES.edge_rounds):
+    for _ in range(_EDGE_ROUNDS):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]
         if residual.size <= len(moved) + 4:

@@ -17,11 +17,16 @@ from ...core.arrays import Array
 from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.csv_table import shown
 from ...core.processes.confined import confined
-from ..rules import RULES
 from ..shared.units import LENGTH, metres
 from ..table.cells import UNSEEN
 from ..table.file import Columns, read_columns
 from .exports import read_export
+
+# limit: frames of a recording at least [-]; two flights of a parabola each
+_MOCAP_FRAMES = 10
+
+# limit: distance of a marker from the origin [m]; a stadium: millimetres taken for metres
+_FARTHEST_MARKER = 1e3
 
 UNITS = ("m", "cm", "mm")
 """Units of length that a file may be in."""
@@ -87,10 +92,10 @@ class Markers:
     def part(self, first: int, last: int | None) -> Markers:
         """Return frames `first` to `last`, both included."""
         stop = None if last is None else last + 1
-        if self.time[first:stop].size < RULES.mocap_frames:
+        if self.time[first:stop].size < _MOCAP_FRAMES:
             raise InputError(
                 f"{self.time[first:stop].size} frames in the range", source=self.source,
-                allowed=f"{RULES.mocap_frames} frames or more",
+                allowed=f"{_MOCAP_FRAMES} frames or more",
             )  # fmt: skip
         return replace(self, time=self.time[first:stop], position=self.position[first:stop])
 
@@ -136,15 +141,15 @@ def read_markers(
         markers = Markers(time, export.names, export.position * factor, str(path))
     else:
         markers = _table(path, unit, rate, select, points or {})
-    if markers.time.size < RULES.mocap_frames:
+    if markers.time.size < _MOCAP_FRAMES:
         raise InputError(
-            f"{markers.time.size} frames", source=str(path), allowed=f"{RULES.mocap_frames} or more"
+            f"{markers.time.size} frames", source=str(path), allowed=f"{_MOCAP_FRAMES} or more"
         )
     farthest = float(np.nanmax(np.abs(markers.position), initial=0.0))
-    if farthest > RULES.farthest_marker:
+    if farthest > _FARTHEST_MARKER:
         raise InputError(
             f"a marker {farthest:.3g} m from the origin", source=str(path), key="unit",
-            allowed=f"up to {RULES.farthest_marker:g} m",
+            allowed=f"up to {_FARTHEST_MARKER:g} m",
         )  # fmt: skip
     if not np.all(np.diff(markers.time) > 0.0):
         row = int(np.argmin(np.diff(markers.time) > 0.0)) + 1

@@ -13,7 +13,7 @@ import numpy as np
 from ...core.arrays import Array
 from ..measured import Measured
 from ..rules import RULES
-from ..shared.regression import robust_regression, robust_std
+from ..shared.regression import FIT_ROUNDS, robust_regression, robust_std
 from .motion import OWN, SHARED, Motion, Prior, deviations, first_guess, jacobian
 from .rigid import Poses
 
@@ -61,7 +61,7 @@ def fit_flights(
         prior.value.copy(),
         1e-4,
     )
-    for _ in range(RULES.fit_rounds):
+    for _ in range(FIT_ROUNDS):
         weight = max(sigma, 1e-7)
         motions, offset, left, settled = _gauss_newton(poses, spans, motions, offset, prior, weight)
         sigma = robust_std(left)
@@ -150,7 +150,7 @@ def alone(
     motions, offset = [first_guess(poses, span, gravity)], prior.value.copy()
     # the prior of b only keeps what no spin shows from running away
     weight = 1e-4
-    for _ in range(RULES.fit_rounds):
+    for _ in range(FIT_ROUNDS):
         motions, offset, _, settled = _gauss_newton(poses, [span], motions, offset, prior, weight)
         if settled:
             break

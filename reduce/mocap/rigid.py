@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from ...core.arrays import Array, Integers, Mask
 from ...core.errors import InputError
 from ..rules import RULES
+from ..shared.regression import FIT_ROUNDS
 from .file import Markers
 
 
@@ -133,7 +134,7 @@ def _mean_shape(points: Array, seen: Mask, source: str) -> Array:
     nearest = np.argmin(np.abs(distance - np.median(distance, axis=0)).sum(axis=(1, 2)))
     shape = points[whole[nearest]] - points[whole[nearest]].mean(axis=0)
     usable = np.flatnonzero(seen.sum(axis=1) >= 3)
-    for _ in range(RULES.fit_rounds):
+    for _ in range(FIT_ROUNDS):
         back = np.full((usable.size, *shape.shape), np.nan)
         for row, k in enumerate(usable):
             origin, turn = kabsch(shape[seen[k]], points[k, seen[k]])

@@ -14,6 +14,9 @@ from ..rules import RULES
 from ..shared.regression import robust_std
 from .file import Scan
 
+# limit: points of a scan of a ball at least [-]
+_BALL_FEWEST = 200
+
 # limit: points of a scan of a ball that are fitted [-]: memory; more move no radius
 _BALL_POINTS = 20_000
 
@@ -63,10 +66,10 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     extent = (np.array(scan.z.shape) - 1) * scan.step
     limit = reach or float(min(np.min(top), np.min(extent - top)))
     near = np.flatnonzero(np.hypot(x - top[0], y - top[1]) <= limit)
-    if near.size < RULES.ball_fewest:
+    if near.size < _BALL_FEWEST:
         raise InputError(
             f"{near.size} points within {limit:.3g} m of the top", source=scan.source,
-            key="reach_m", allowed=f"{RULES.ball_fewest} or more points",
+            key="reach_m", allowed=f"{_BALL_FEWEST} or more points",
         )  # fmt: skip
     near = near[:: max(1, near.size // _BALL_POINTS)]
     x, y, z = x[near], y[near], z[near]

@@ -15,11 +15,16 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.csv_table import number, shown
-from ..rules import RULES
-from ..shared.units import LENGTH, metres
+from ..shared.units import LARGEST_NUMBER, LENGTH, metres
 from ..table.cells import UNSEEN
 from ..table.file import is_data, numbered_lines, text_rows
 from ..table.heading import unit_in
+
+# limit: distance of neighbouring points at most [m]; one reader's format gives 0.3 m for 0.3 um
+_SCAN_STEP = 1e-3
+
+# limit: points of a scan at least [-]
+_SCAN_POINTS = 100
 
 # limit: points a byte of a packed file at most [-]: what compression gives of a level plane
 _PACKED_POINTS = 50
@@ -77,11 +82,11 @@ def read_scan(
     """
     found = _text(path) if path.suffix.lower() in _TEXT else None
     found = found or _known_format(path, step)
-    heights = np.where(np.abs(found.z) < RULES.largest_number, found.z, np.nan)
-    if heights.size < RULES.scan_points or np.isfinite(heights).sum() < 0.05 * heights.size:
+    heights = np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan)
+    if heights.size < _SCAN_POINTS or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
             f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),
-            allowed=f"{RULES.scan_points} or more, seen in a twentieth of the points or more",
+            allowed=f"{_SCAN_POINTS} or more, seen in a twentieth of the points or more",
         )  # fmt: skip
     heights = heights * _factor(height_unit or unit or found.z_unit or found.unit, path)
     if heights.ndim == 1:
@@ -128,12 +133,12 @@ def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) ->
 
 def _refuse_far(step: float, path: Path) -> None:
     """Refuse points so far apart that the unit must be wrong."""
-    if step > RULES.scan_step:
+    if step > _SCAN_STEP:
         raise InputError(
-            f"its points are {step:.3g} m apart, {step / RULES.scan_step:.0f} times as far as in a "
+            f"its points are {step:.3g} m apart, {step / _SCAN_STEP:.0f} times as far as in a "
             "scan",
             source=str(path),
-            allowed=f"--unit or --step-m, where neighbours are {RULES.scan_step:g} m apart or less",
+            allowed=f"--unit or --step-m, where neighbours are {_SCAN_STEP:g} m apart or less",
         )  # fmt: skip
 
 

@@ -9,6 +9,9 @@ import numpy as np
 from ...core.arrays import Array, Mask
 from ..rules import RULES
 
+# limit: rounds of a fit at most [-]; it ends by itself
+FIT_ROUNDS = 20
+
 # limit: singular value of a design, of the largest, below which it holds round-off alone [-]:
 # root of the last digit of a double, twice
 _UNSEEN = 3e-8
@@ -84,7 +87,7 @@ def unit_covariance(design: Array) -> Array:
 def _soft_l1(design: Array, observed: Array, start: Array, spread: float) -> Array:
     """Minimise the sum of sqrt(1 + z²) over residuals z in units of `spread`, by reweighting."""
     c: Array = start
-    for _ in range(RULES.fit_rounds):
+    for _ in range(FIT_ROUNDS):
         weight = (1.0 + ((observed - design @ c) / spread) ** 2) ** -0.25
         there = np.linalg.lstsq(design * weight[:, None], observed * weight, rcond=None)[0]
         moved = float(np.abs(design @ (there - c)).max())

@@ -7,6 +7,9 @@ from collections.abc import Iterable
 
 from ...core.errors import InputError
 
+# limit: largest number of a column or a scan [its unit]; no record in any unit: a damaged file
+LARGEST_NUMBER = 1e20
+
 STANDARD_GRAVITY = 9.80665
 POUND_FORCE = 4.4482216152605
 """Both exact by definition (NIST SP 811)."""

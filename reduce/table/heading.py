@@ -7,8 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ...core.errors import InputError
-from ..rules import RULES
 from ..shared.units import UNITS
+
+# limit: lines above the numbers among which units are looked for [-]; headers of five
+# oscilloscopes
+_LINES_ABOVE = 4
 
 _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
     "V", "mV", "px",
@@ -107,7 +110,7 @@ def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
     # a marker that was not seen yet is no name
     rows = [list(row) for row in above if {cell.lower() for cell in row} - {"", "nan"}]
     units: list[str] = []
-    for row in reversed(rows[-RULES.lines_above :]):
+    for row in reversed(rows[-_LINES_ABOVE:]):
         filled = [cell for cell in row if cell]
         several = len(filled) > 1 or (row is rows[-1] and len(rows) > 1)
         if several and all(map(is_unit, filled)):

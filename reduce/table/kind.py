@@ -21,7 +21,7 @@ from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
-from ..shared.units import HERTZ, LENGTH, TIME
+from ..shared.units import HERTZ, LARGEST_NUMBER, LENGTH, TIME
 from .cells import DAY
 from .file import Columns, read_columns
 from .options import TableOptions
@@ -271,10 +271,10 @@ def _series(table: Columns, options: TableOptions) -> Series:
     marks = tuple(sorted({table.cells[int(k)][column] for k in np.flatnonzero(holes)}))
     time, value, missed = time[whole], value[whole], time[holes]
     largest = float(np.abs([time, value]).max(initial=0.0))
-    if largest > RULES.largest_number:
+    if largest > LARGEST_NUMBER:
         raise InputError(
             f"a number of {largest:.3g}", source=table.source, key="value",
-            allowed=f"up to {RULES.largest_number:g}",
+            allowed=f"up to {LARGEST_NUMBER:g}",
         )  # fmt: skip
     # a tracker that begins anew writes its frames again further down
     ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])

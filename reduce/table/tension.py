@@ -19,6 +19,9 @@ from ..shared.units import LENGTH, UNITS
 from .file import Columns
 from .rise import elastic_rise
 
+# limit: strain and stress that no metal was measured at [-, Pa]; a slip of the unit
+_NO_METAL = (10.0, 1e12)
+
 # limit: rows of a curve that is written [-]: a screen or two
 _TENSION_KEPT = 60
 
@@ -96,7 +99,7 @@ def reduce_tension(
 
 def _readings(strain: Array, stress: Array, source: str) -> tuple[Array, Array]:
     """Return the rows that hold both numbers; refuse what no metal bears, and too few rows."""
-    most = RULES.no_metal
+    most = _NO_METAL
     wild = np.flatnonzero((np.abs(strain) > most[0]) | (np.abs(stress) > most[1]))
     if wild.size:
         k = wild[0]

@@ -12,6 +12,9 @@ from scipy.special import ndtr
 from ...core.arrays import Array, Mask
 from ..rules import RULES
 
+# limit: rounds of the edge and the circle at most [-]
+_TIP_ROUNDS = 12
+
 
 @dataclass(frozen=True)
 class Edge:
@@ -51,7 +54,7 @@ def _steps(values: Array, t: Array) -> tuple[Array, Mask]:
         axis=1,
     )
     move = np.full(len(p), np.inf)
-    for _ in range(RULES.tip_rounds):
+    for _ in range(_TIP_ROUNDS):
         z = (p[:, :1] - t) / p[:, 3:]
         step = ndtr(z)
         slope = p[:, 2:3] * np.exp(-0.5 * z**2) / (math.sqrt(2.0 * math.pi) * p[:, 3:])

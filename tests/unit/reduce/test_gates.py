@@ -30,13 +30,11 @@ def noise(std=1.0, seed=3):
 
 
 def table_of_gates() -> str:
-    """The gates as a table in Markdown, the limits and their sources from the register."""
-    about = {f.name: f.metadata for f in fields(RULES)}
-    rows = ["| of | looked at | limit | effect | source |", "| --- | --- | --- | --- | --- |"]
+    """The gates as a table in Markdown, the limits from the register."""
+    rows = ["| of | looked at | limit | effect |", "| --- | --- | --- | --- |"]
     for gate in GATES.values():
         limit = f"{getattr(RULES, gate.limit):g}" if gate.limit else "-"
-        source = about[gate.limit]["source"] if gate.limit else "what is found itself"
-        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} | {source} |")
+        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} |")
     return "\n".join(rows)
 
 
