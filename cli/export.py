@@ -70,9 +70,7 @@ def export_dem(
             "a flow curve hardening."
         ),
     ] = "",
-    out: Annotated[Path, folder_option("Folder for the table and the fragments.")] = Path(
-        "build/dem"
-    ),
+    out: Annotated[Path, folder_option("Folder for the table and the inputs.")] = Path("build/dem"),
 ) -> None:
     """Give the contact laws of other programs parameters for a pair, by speed.
 
@@ -89,11 +87,12 @@ def export_dem(
 def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
     """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
-    from ..dynamics.told.discrete_elements import HEAD, lammps_lines, substitutes, table
+    from ..dynamics.told.discrete_elements import HEAD, substitutes, table
+    from ..dynamics.told.lammps import lammps_lines
     from ..models import law_named
     from ..models.choose import follows_flow
 
-    chosen = law_named(law or ball.law)
+    chosen = ball.by(law_named(law or ball.law))
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
     shown, between = console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
@@ -110,22 +109,27 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     files = {"dem.csv": csv_text(cells, header=HEAD)}
     if ball.second is None or ball.second.radius > 0.0:
         files["lammps.in"] = lammps_lines(
-            rows, ball.pair, friction=ball.friction, of_balls=between, spheres=two
+            rows,
+            ball.pair,
+            mass=ball.mass,
+            friction=ball.friction,
+            of_balls=between,
+            second=ball.second,
         )
     for name, text in (files | _fragments(ball, chosen, rows)).items():
         shown.print(f"written: {write_file(out / name, text)}")
 
 
 def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> dict[str, str]:
-    """The lines of the other programs, by file."""
+    """What the other programs read, by file."""
     from ..dynamics.told import simulators as s
 
     contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
     speeds = [row.law.speed for row in rows]
     formula = s.formula_of(law, ball.pair, mass=ball.mass, speeds=speeds)
     return {
-        "hysteretic.txt": s.hysteretic_lines(rows, contact),
-        "mujoco.xml": s.mujoco_lines(rows, contact),
+        **s.hysteretic_files(rows, contact),
+        **s.mujoco_files(rows, contact),
         "drake.py": s.drake_lines(rows, contact),
         "chrono.txt": s.chrono_lines(rows, contact),
         "formula.txt": s.formula_lines(formula),

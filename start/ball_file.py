@@ -16,6 +16,8 @@ from ..dynamics.files.scenes import curves_in
 from ..dynamics.files.second import SecondSphere
 from ..dynamics.files.setup import FOLLOWING, Setup, setup_of
 from ..models import LAWS
+from ..models.base import ContactLaw
+from ..models.turned import turned
 from .case_file import read_pair
 
 _BODY = ("E_Pa", "nu", "Sy_Pa", "rigid", "density_kg_m3", "flow_curve", "hardening")
@@ -52,6 +54,12 @@ class ExportedBall(NamedTuple):
     law: str  # of ours that knows these metals
     aside: list[str]  # what the file says beyond this
     second: SecondSphere | None = None  # in place of the flat; pair and mass are those of both
+
+    def by(self, law: ContactLaw) -> ContactLaw:
+        """Return the law as `impact` has it: the smaller of two spheres is the law's."""
+        other = math.inf if self.second is None else self.second.radius
+        # 1/R = 1/R_1 + 1/R_2: the other one is the smaller where R is below half of it
+        return turned(law) if 0.0 < other < 2.0 * self.pair.R else law
 
 
 def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:

@@ -1,4 +1,4 @@
-"""Lines for MuJoCo, Drake, Chrono, Newton, YADE, LIGGGHTS and MercuryDPM, and a formula of e.
+"""For MuJoCo, Drake, Chrono, Newton, YADE, LIGGGHTS and MercuryDPM, and a formula of e.
 
 Each program joins the numbers of two bodies in its own way; the lines give both bodies the same, so
 that the contact has what the table says.
@@ -28,6 +28,9 @@ from ..batch import impacts
 from .collisions import DASHPOT, HUNT
 from .discrete_elements import ExportedRow, Substitute, ball_scene
 
+# limit: moment of inertia from which MuJoCo takes a body (mjMINVAL) [kg m^2]
+_MUJOCO_LEAST = 1e-15
+
 
 class BodiesMet(NamedTuple):
     """What the lines need beside the rows."""
@@ -37,25 +40,68 @@ class BodiesMet(NamedTuple):
     friction: float  # [-]
 
 
-def mujoco_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
-    """A fragment of MJCF: one class of geoms for each speed."""
-    lines = [
-        "<!-- take the class of your impacts for both geoms. solref below 0: stiffness and damping",
-        "     over the effective mass. The contact lets go where it would pull. -->",
-        "<default>",
-    ]
+_MUJOCO = """<!-- `python mujoco_drop.py` drops a ball at each speed and prints its restitution.
+     Take the class of your impacts for both geoms. solref below 0: stiffness and damping over the
+     effective mass. The contact lets go where it would pull. -->
+<mujoco>
+<option timestep="{step:.3e}" gravity="0 0 0" integrator="RK4"/>
+<default>
+{classes}
+</default>
+<worldbody>
+{bodies}
+</worldbody>
+<keyframe><key qvel="{speeds}"/></keyframe>
+</mujoco>
+"""
+
+_MUJOCO_DROP = """import mujoco
+
+model = mujoco.MjModel.from_xml_path("mujoco.xml")
+data = mujoco.MjData(model)
+mujoco.mj_resetDataKeyframe(model, data, 0)
+before = -data.qvel[2::6]
+while data.time < {end:.3e}:
+    mujoco.mj_step(model, data)
+for speed, back in zip(before, data.qvel[2::6], strict=True):
+    print(f"v = {{speed:g}} m/s: restitution {{back / speed:.4f}}")
+"""
+
+
+def mujoco_files(rows: Sequence[ExportedRow], contact: BodiesMet) -> dict[str, str]:
+    """A model of MuJoCo with a ball for each speed, and the script that drops them."""
+    classes: list[str] = []
+    bodies: list[str] = []
+    speeds: list[str] = []
+    times: list[float] = []
+    R = contact.radius
     for row in rows:
-        s = row.named(DASHPOT.name)
+        s, name, x = row.named(DASHPOT.name), f"v{row.law.speed:g}", 4.0 * R * len(times)
         if s is None:
-            lines.append(f"  <!-- {row.without(DASHPOT.name)} -->")
+            classes.append(f"<!-- {row.without(DASHPOT.name)} -->")
             continue
         k, b = s.stiffness / contact.mass, s.damping / contact.mass
-        lines += [
-            f"  <!-- {_told(row, s)} -->",
-            f'  <default class="v{row.law.speed:g}"><geom solref="{-k:.6e} {-b:.6e}" '
+        classes += [
+            f"<!-- {_told(row, s)} -->",
+            f'<default class="{name}"><geom solref="{-k:.6e} {-b:.6e}" '
             f'solimp="0.9999 0.9999 0.001 0.5 2" friction="{contact.friction:g} 0 0"/></default>',
         ]
-    return "\n".join([*lines, "</default>"]) + "\n"
+        bodies += [
+            f'<geom class="{name}" type="box" size="{R:g} {R:g} {R:g}" pos="{x:g} 0 {-R:g}"/>',
+            f'<body pos="{x:g} 0 {R:.12g}"><freejoint/><geom class="{name}" type="sphere" '
+            f'size="{R:.12g}" mass="{contact.mass:.10g}"/></body>',
+        ]
+        speeds.append(f"0 0 {-row.law.speed:g} 0 0 0")
+        times.append(s.blow.time)
+    if not times:
+        return {"mujoco.xml": "\n".join(classes) + "\n"}
+    if 0.4 * contact.mass * R**2 < _MUJOCO_LEAST:
+        classes.insert(0, "<!-- too light for MuJoCo in SI: give all in mm and mg -->")
+    model = _MUJOCO.format(
+        step=min(times) / 1000.0, classes="\n".join(classes), bodies="\n".join(bodies),
+        speeds=" ".join(speeds),
+    )  # fmt: skip
+    return {"mujoco.xml": model, "mujoco_drop.py": _MUJOCO_DROP.format(end=1.5 * max(times))}
 
 
 def drake_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
@@ -90,27 +136,69 @@ def chrono_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     return _each(rows, DASHPOT.name, head, line)
 
 
-def hysteretic_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
-    """The linear hysteretic law (Luding) for MercuryDPM, YADE and LIGGGHTS."""
+_YADE = """# `yade -n -x yade_drop.py` drops a ball on a flat; restitutions are printed.
+# A wall of YADE has no radius, which this law needs: the flat is a fixed sphere of the ball's. PhiF
+# is of two radii a, b with 2 a b/(a + b) = {R:g} m, ks 2/7 of k1.
+{told}
+BLOWS = [  # speed [m/s], k1 and kp [N/m], PhiF [-], time step [s]
+{blows}
+]
+for speed, k1, kp, PhiF, dt in BLOWS:
+    O.reset()
+    O.materials.append(
+        LudingMat(
+            density={density:.10g}, k1=k1, kp=kp, ks=k1 / 3.5, kc=0, PhiF=PhiF, G0=0,
+            frictionAngle={angle:.6g},
+        )
+    )
+    R = {R:.10g}
+    O.bodies.append([utils.sphere((0, 0, -R), R, fixed=True), utils.sphere((0, 0, R), R)])
+    O.bodies[1].state.vel = (0, 0, -speed)
+    O.engines = [
+        ForceResetter(),
+        InsertionSortCollider([Bo1_Sphere_Aabb()]),
+        InteractionLoop(
+            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ip2_LudingMat_LudingMat_LudingPhys()],
+            [Law2_ScGeom_LudingPhys_Basic()],
+        ),
+        NewtonIntegrator(damping=0),
+    ]
+    O.dt = dt
+    O.run(3000, True)
+    print(f"v = {{speed:g}} m/s: restitution {{O.bodies[1].state.vel[2] / speed:.4f}}")
+"""
+
+
+def hysteretic_files(rows: Sequence[ExportedRow], contact: BodiesMet) -> dict[str, str]:
+    """The linear hysteretic law (Luding): lines for MercuryDPM and LIGGGHTS, a script of YADE."""
+    blows = []
 
     def line(s: Substitute) -> str:
         k1, k2, depth = s.stiffness, s.unloading, s.blow.depth
         phi = depth * (1.0 - k1 / k2) / (2.0 * contact.radius) if k2 > k1 else 0.0
-        # a body's half: two in series have what the contact has
+        blows.append(
+            f"    ({s.blow.speed:g}, {k1:.6e}, {k2:.6e}, {2 * phi:.6e}, "
+            f"{s.blow.time / 2000.0:.4e}),"
+        )
         return (
             f"k1 = {k1:.6e}; k2 = {k2:.6e}; depth_m = {depth:.6e}\n"
             f"MercuryDPM: species->setPlasticParameters({k1:.6e}, {k2:.6e}, 0.0, {phi:.6e});\n"
-            f"YADE: LudingMat(k1={2 * k1:.6e}, kp={2 * k2:.6e}, kc=0, PhiF={2 * phi:.6e}, G0=0, "
-            f"frictionAngle={math.atan(contact.friction):.6g})\n"
             f"LIGGGHTS hooke/hysteresis: kn2k1 = {k1 / k2:.6f}"
         )
 
     head = (
         "# loading k1 and unloading k2 [N/m] that is reached at the depth, no cohesion.\n"
-        "# MercuryDPM: LinearPlasticViscoelasticFrictionSpecies. YADE: for both bodies.\n"
+        "# MercuryDPM: LinearPlasticViscoelasticFrictionSpecies.\n"
         f"# coefficient of friction: {contact.friction:g}"
     )
-    return _each(rows, "linear-hysteretic", head, line)
+    text = _each(rows, "linear-hysteretic", head, line)
+    told = [one for one in text.splitlines()[3:] if one.startswith("#")]
+    script = _YADE.format(
+        told="\n".join(told), blows="\n".join(blows), angle=math.atan(contact.friction),
+        R=contact.radius, density=contact.mass / (4.0 / 3.0 * math.pi * contact.radius**3),
+    )  # fmt: skip
+    return {"hysteretic.txt": text, "yade_drop.py": script}
 
 
 def _each(

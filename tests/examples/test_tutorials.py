@@ -170,7 +170,7 @@ def test_indentation_from_tension(followed: Callable[[str], dict[str, Any]]) -> 
 def test_three_questions(followed: Callable[[str], dict[str, Any]]) -> None:
     """The sheet's effect was made: over its speeds a rate is a constant factor, and is told so."""
     followed("three-questions")
-    assert "fix wall/gran" in Path("build/dem/lammps.in").read_text()
+    assert "all wall/gran granular" in Path("build/dem/lammps.in").read_text()
     (file,) = Path("build/diagnose").glob("*/verdict.json")
     verdict = json.loads(file.read_text())
     (wrong,) = verdict["wrong_inputs"]

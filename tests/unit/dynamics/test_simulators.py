@@ -1,21 +1,27 @@
-"""Lines for other programs, judged by MuJoCo and Drake themselves where they are installed."""
+"""Files for other programs, run by LAMMPS, MuJoCo, YADE and Drake where they are installed."""
 
 import math
 import re
+import shutil
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.core.inputs.second_sphere import StruckSphere
 from dentscope.dynamics.told.collisions import DASHPOT, HUNT, blow_on, damping_for
-from dentscope.dynamics.told.discrete_elements import substitutes
+from dentscope.dynamics.told.discrete_elements import substitutes, two_balls
+from dentscope.dynamics.told.lammps import lammps_lines
 from dentscope.dynamics.told.simulators import (
     BodiesMet,
     chrono_lines,
     drake_lines,
     formula_of,
-    hysteretic_lines,
-    mujoco_lines,
+    hysteretic_files,
+    mujoco_files,
 )
 from dentscope.models import LAWS
 
@@ -58,29 +64,59 @@ def test_each_program_gets_the_restitution_and_the_depth(rows):
         assert damping_for(DASHPOT, row.law.restitution) < 2.0
 
 
-def test_mujoco_returns_what_the_table_says(rows):
-    """A ball on a plane in MuJoCo itself, with the very fragment."""
-    mujoco = pytest.importorskip("mujoco")
-    lines = mujoco_lines(rows, CONTACT)
-    for row in rows:
-        s = row.named(DASHPOT.name)
-        name = f"v{row.law.speed:g}"
-        model = mujoco.MjModel.from_xml_string(
-            f'<mujoco><option timestep="{s.blow.time / 2000}" gravity="0 0 0" integrator="RK4"/>'
-            f'{lines}<worldbody><geom class="{name}" type="plane" size="1 1 1"/>'
-            f'<body pos="0 0 {PAIR.R}"><freejoint/><geom class="{name}" type="sphere" '
-            f'size="{PAIR.R}" mass="{MASS}"/></body></worldbody></mujoco>'
-        )
-        data = mujoco.MjData(model)
-        data.qvel[2] = -row.law.speed
-        low, speed = 0.0, -row.law.speed
-        for _ in range(4000):
-            mujoco.mj_step(model, data)
-            low, before, speed = max(low, PAIR.R - data.qpos[2]), speed, data.qvel[2]
-            if speed > 0.0 and speed == before:
-                break
-        assert speed / row.law.speed == pytest.approx(row.law.restitution, rel=0.01)
-        assert low == pytest.approx(row.law.depth, rel=0.01)
+def printed(text):
+    """The restitutions that a script printed, by speed."""
+    found = re.findall(r"v = (\S+) m/s: restitution ([-.\d]+)(?:, of two balls ([-.\d]+))?", text)
+    return {float(v): [float(e) for e in es if e] for v, *es in found}
+
+
+def dropped(files, command, folder):
+    """What a program prints of the files as they are."""
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    return printed(ended.stdout)
+
+
+def test_mujoco_drops_what_was_written(rows, tmp_path):
+    pytest.importorskip("mujoco")
+    found = dropped(mujoco_files(rows, CONTACT), [sys.executable, "mujoco_drop.py"], tmp_path)
+    assert found == {v: [pytest.approx(r.law.restitution, rel=1e-3)]
+                     for v, r in zip(SPEEDS, rows, strict=True)}  # fmt: skip
+
+
+def test_yade_drops_what_was_written(rows, tmp_path):
+    yade = shutil.which("yade") or pytest.skip("yade is not installed")
+    command = [yade, "-n", "-x", "yade_drop.py"]
+    found = dropped(hysteretic_files(rows, CONTACT), command, tmp_path)
+    assert found == {v: [pytest.approx(r.law.restitution, rel=1e-3)]
+                     for v, r in zip(SPEEDS, rows, strict=True)}  # fmt: skip
+
+
+def test_lammps_drops_what_was_written(rows, tmp_path):
+    """On the flat and of two balls; of two spheres from either side, one held."""
+    lammps = pytest.importorskip("lammps")
+    pair, half = two_balls(PAIR, MASS)
+    two = substitutes(LAWS["fitted"], pair, mass=half, speeds=SPEEDS)
+    held = StruckSphere(radius=4.0 * PAIR.R)
+    inputs = {
+        "flat": (lammps_lines(rows, PAIR, mass=MASS, friction=0.3, of_balls=two), two),
+        "held": (lammps_lines(rows, PAIR, mass=MASS, second=held), ()),
+        "free": (lammps_lines(rows, PAIR, mass=MASS, second=replace(held, mass=9 * MASS)), ()),
+    }
+    for name, (text, others) in inputs.items():
+        file, log = tmp_path / name, tmp_path / f"{name}.log"
+        file.write_text(text)
+        try:
+            solver = lammps.lammps(cmdargs=["-screen", "none", "-log", str(log)])
+        except OSError as error:
+            pytest.skip(str(error))
+        solver.file(str(file))
+        solver.close()
+        both = zip(rows, others or rows, strict=True)
+        wanted = [[a.law.restitution, b.law.restitution][: 1 + bool(others)] for a, b in both]
+        found = printed(log.read_text())
+        assert list(found.values()) == [pytest.approx(e, abs=2e-4) for e in wanted], name
 
 
 def test_drake_returns_what_the_table_says(rows):
@@ -122,17 +158,19 @@ def test_drake_returns_what_the_table_says(rows):
     assert back == pytest.approx(row.law.restitution, rel=0.01)
 
 
-def test_the_hysteretic_lines_give_each_program_its_own_numbers(rows):
+def test_the_hysteretic_numbers_are_those_of_each_program(rows):
     """Both programs' plastic limit (Luding 2008, Eq. 7) lies at the depth of the blow."""
-    text = hysteretic_lines(rows, CONTACT)
+    files = hysteretic_files(rows, CONTACT)
     number = r"([-+.e0-9]+)"
-    mercury = re.findall(rf"setPlasticParameters\({number}, {number}, 0.0, {number}\)", text)
-    yade = re.findall(rf"k1={number}, kp={number}, kc=0, PhiF={number}", text)
+    mercury = re.findall(
+        rf"setPlasticParameters\({number}, {number}, 0.0, {number}\)", files["hysteretic.txt"]
+    )
+    yade = re.findall(rf"^    \({', '.join([number] * 5)}\),", files["yade_drop.py"], re.MULTILINE)
     for row, one, two in zip(rows, mercury, yade, strict=True):
         k1, k2, phi = map(float, one)
         assert phi * 2.0 * PAIR.R * k2 / (k2 - k1) == pytest.approx(row.law.depth, rel=1e-4)
         assert math.sqrt(k1 / k2) == pytest.approx(row.law.restitution, rel=1e-5)
-        assert [float(x) for x in two] == pytest.approx([2 * k1, 2 * k2, 2 * phi], rel=1e-5)
+        assert [float(x) for x in two[1:4]] == pytest.approx([k1, k2, 2 * phi], rel=1e-5)
 
 
 def test_chrono_divides_its_damping_by_the_mass(rows):
@@ -141,9 +179,9 @@ def test_chrono_divides_its_damping_by_the_mass(rows):
     assert np.asarray(gn) * MASS == pytest.approx(kd, rel=1e-5)
 
 
-def test_mujocos_fragment_is_well_formed(rows):
-    tree = ET.fromstring(mujoco_lines(rows, CONTACT))
-    assert [one.get("class") for one in tree] == ["v0.1", "v1", "v10"]
+def test_mujocos_model_has_a_class_for_each_speed(rows):
+    tree = ET.fromstring(mujoco_files(rows, CONTACT)["mujoco.xml"])
+    assert [one.get("class") for one in tree.iter("default")] == [None, "v0.1", "v1", "v10"]
 
 
 def test_the_formula_holds_as_far_as_it_says():
