@@ -21,7 +21,9 @@ from ..core.flow import Flow
 from ..core.material import Material, Pair
 from ..core.provenance import content_id
 from ..core.rig import MaterialTable, material_keys
-from .rules import RULES
+
+_GROUP_DIGITS = 12
+"""Significant digits of the groups that identify a case; changing it changes every id."""
 
 # limit: depths at which pressure and surfaces are kept [-]: as many curves as a figure shows
 # apart
@@ -209,7 +211,7 @@ def _body(body: Material, unit: float) -> Any:
 
 
 def _rounded(x: float) -> float:
-    return float(f"{x:.{RULES.group_digits}g}")
+    return float(f"{x:.{_GROUP_DIGITS}g}")
 
 
 def _flow_keys(problem: fem.ContactProblem) -> dict[str, Any]:

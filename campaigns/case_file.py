@@ -19,8 +19,10 @@ from ..fem.results.fields import write_vtu
 from .case import Case
 from .contents import new_image
 from .quality import quality_of
-from .rules import RULES
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
+
+# limit: profiles are kept out to this many contact radii [-]; beyond it the surface is at rest
+_PROFILE_REACH = 2.0
 
 # limit: values of an array that is compressed [-]: below it compression saves nothing
 _COMPRESSED_FROM = 512
@@ -121,7 +123,7 @@ def _put_solution(file: h5py.Group, solution: Solution) -> None:
 
 
 def _put_profiles(group: h5py.Group, solution: Solution) -> None:
-    reach = RULES.profile_reach * np.nanmax(solution.loading.radius)
+    reach = _PROFILE_REACH * np.nanmax(solution.loading.radius)
     for name, about in PROFILES.items():
         columns = [getattr(p, name) for p in solution.profiles]
         if about.axes[-1] != "node":

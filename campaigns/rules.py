@@ -11,16 +11,6 @@ from ..core.rules import rule
 class CampaignRules:
     """What a case keeps, how it is judged, what it costs, how it is handed out."""
 
-    profile_reach: float = rule(
-        2.0,
-        "profiles are kept out to this many contact radii [-]",
-        "beyond it the surface is at rest",
-    )  # fmt: skip
-    group_digits: int = rule(
-        12,
-        "significant digits of the groups that identify a case [-]",
-        "more would tell round-off apart. Changing it changes every id",
-    )  # fmt: skip
     energy_defect: float = rule(
         0.005,
         "largest |work - stored - dissipated|/work of a case without a remark [-]",

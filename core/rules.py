@@ -3,8 +3,8 @@
 A tuned number is one that somebody chose and that a result hangs on: a threshold, a tolerance, the
 size of a grid, a weight. A limit is one that somebody chose and that no result hangs on: of memory,
 of waiting, of what is shown, a guard against round-off or a loop without end; it stands beside its
-use, under a comment that begins with `limit:`. Constants of nature, coefficients that a paper
-printed, units and the layout of arrays are neither.
+use, under a comment that begins with `limit:`. Constants of nature, numbers that a paper or a
+standard printed, units and the layout of arrays are neither.
 """
 
 from __future__ import annotations

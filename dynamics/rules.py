@@ -84,10 +84,6 @@ class ImpactRules:
         8.0, "thickness over the depth of a dent that counts as thick [-]",
         "ISO 6506-1, 6.3",
     )  # fmt: skip
-    indentation_rate: float = rule(
-        0.4, "strain rate of an indentation over v/a [-]",
-        "Tabor 1951",
-    )  # fmt: skip
     pressure_points: int = rule(
         60, "depths at which the mean pressure is looked at [-]",
         "chosen; no measurement is kept",

@@ -17,6 +17,9 @@ from .rules import RULES
 from .table import TableLaw
 from .turned import TurnedLaw
 
+_ELASTIC_DEPTH = 1.9
+"""Depth up to which a contact is elastic [critical depths] (Jackson and Green 2005, Eq. 9)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Demand:
@@ -66,7 +69,7 @@ def objection(law: ContactLaw, need: Demand) -> str:
     if need.regime == "elastic":
         return ""
     if law.name == "hertz":
-        return "" if need.w <= RULES.elastic_depth else "elastic only"
+        return "" if need.w <= _ELASTIC_DEPTH else "elastic only"
     other = {"flattening": "indentation", "indentation": "flattening"}.get(need.regime)
     if law.regime == other:
         return f"made for {law.regime}"

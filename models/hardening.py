@@ -48,7 +48,9 @@ from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import LEAST, Uncertainty
 
-REPRESENTATIVE = RULES.representative
+REPRESENTATIVE = 0.2
+"""Plastic strain that stands for all of them, over a/R [-] (Tabor 1951)."""
+
 """Plastic strain that stands for all of them, over a/R (Tabor)."""
 
 CORRECTED = ("depth", "force", "share", "part", "recovered", "exponent")

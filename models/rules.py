@@ -19,10 +19,6 @@ class ModelRules:
         1.7, "ratio of strengths above which the flat alone is said to yield [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    elastic_depth: float = rule(
-        1.9, "depth up to which a contact is called elastic [critical depths]",
-        "Jackson and Green 2005, Eq. 9",
-    )  # fmt: skip
     sharpest: float = rule(
         20.0, "steepest taking over between two regimes [-]",
         "over a tenth of the depth, as wide as the data can tell",
@@ -34,10 +30,6 @@ class ModelRules:
     finite_strain_depth: float = rule(
         0.01, "depth at which the law says how far finite elastic strain takes it from Hertz [R]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    representative: float = rule(
-        0.2, "plastic strain that stands for all of them, over a/R [-]",
-        "Tabor 1951",
     )  # fmt: skip
     mean_span: float = rule(
         3.0, "strain at the axis over the representative one [-]",
@@ -100,10 +92,6 @@ class ModelRules:
     radius_rounds: int = rule(
         3, "rounds of the contact radius in each [-]",
         "they go on from the last",
-    )  # fmt: skip
-    unloadings: int = rule(
-        3, "unloadings that a law from a pair's own solve needs [-]",
-        "two ends and what bends between",
     )  # fmt: skip
     points: int = rule(
         240,

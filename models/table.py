@@ -32,7 +32,8 @@ from .rules import RULES
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import LEAST, Uncertainty
 
-FEWEST_UNLOADINGS = RULES.unloadings
+# limit: unloadings that a law from a pair's own solve needs [-]; two ends and what bends between
+FEWEST_UNLOADINGS = 3
 
 
 class LoadingCurve(NamedTuple):

@@ -59,10 +59,6 @@ class RecordingRules:
         2.0, "standard deviations between two readings of an angle [-]",
         "one in twenty",
     )  # fmt: skip
-    load_class: float = rule(
-        0.005, "relative standard deviation of a load that is stated without one [-]",
-        "class 1 of ISO 7500-1: 1 % of the indicated force",
-    )  # fmt: skip
     mean_pressure: tuple[float, ...] = rule(
         (0.35, 1.3), "mean pressure of a press over a stated hardness, least and most [-]",
         "from first yield (1.1 S_y of 2.84 S_y) to metals that harden more than the test saw",

@@ -124,10 +124,6 @@ class ReductionRules:
         0.05, "fall of the load that ends a cycle, in the largest load [-]",
         "partial unloadings take off a third and more (ISO 14577-1); controls swing by 1 %",
     )  # fmt: skip
-    held: float = rule(
-        0.01, "part of the load by which it may vary in a hold [-]",
-        "class 1 of ISO 7500-1",
-    )  # fmt: skip
     clipped_depth: float = rule(
         0.03, "depth that grows under a load that is equal to the last digit, in the whole [-]",
         "creep of a metal in a hold: 1 to 2 %, and a load cell's last digit moves",
@@ -146,13 +142,6 @@ class ReductionRules:
     preload_part: float = rule(
         0.1, "error of the zero that a preload hides, in the depth that is made up [-]",
         "tools/benchmarks/validate_reduce_press.py",
-    )  # fmt: skip
-    stiffness_from: tuple[float, ...] = rule(
-        (0.5, 0.7), "loads down to which the slope of unloading is read, in the largest [-]",
-        "ISO 14577-1, A.4: from 98 % down to 50 or 70 %",
-    )  # fmt: skip
-    stiffness_to: float = rule(
-        0.98, "load from which on it is [-]", "ISO 14577-1, A.4",
     )  # fmt: skip
     fewest_cycles: int = rule(
         4, "cycles that tell the machine's compliance [-]", "two unknowns and their error",
@@ -340,10 +329,6 @@ class ReductionRules:
         1.3, "contrast of a ball, in that of the clip, from which its own grey level is used [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    table_bytes: int = rule(
-        500_000_000, "largest table of numbers [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
     motion_settled: float = rule(
         1e-3, "part of the misfit that a step may still promise when it ends [-]",
         "a thirtieth of a standard deviation",
@@ -390,10 +375,6 @@ class ReductionRules:
         0.5, "the smaller [-]",
         "their difference tells the error of the form",
     )  # fmt: skip
-    bottom_points: int = rule(
-        45, "points of the smaller one at least [-]",
-        "three for each of fifteen coefficients",
-    )  # fmt: skip
     foreign: float = rule(
         6.0,
         "robust standard deviations of what belongs to something else [-]",
@@ -405,10 +386,6 @@ class ReductionRules:
     )  # fmt: skip
     level_points: float = rule(
         0.05, "part of the points that is left to level on [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    line_points: int = rule(
-        12, "points of the smaller fit on a line at least [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     lag_pairs: int = rule(

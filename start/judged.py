@@ -25,6 +25,9 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
+# limit: distance from which the nearest pair is called far [-]
+_FAR = 0.5
+
 # limit: points of a law's curve [-]; a figure's width
 CURVE_POINTS = 120
 
@@ -86,7 +89,7 @@ class Reference(NamedTuple):
     def told(self) -> str:
         """Which pair it is, in the numbers that a contact depends on."""
         p = self.pair
-        far = "; no published pair is like yours" if self.distance > RULES.far else ""
+        far = "; no published pair is like yours" if self.distance > _FAR else ""
         return (
             f"finite elements of E'/S = {p.E_reduced / p.Sy_min:.3g}, Sy* = {p.Sy_ratio:.3g}, "
             f"elastic share of the sphere {p.elastic_share:.2g}{far}"

@@ -19,10 +19,6 @@ class StartRules:
         0.10, "largest departure of a law that may be used [-]",
         "that of a dent whose strength is off by a tenth",
     )  # fmt: skip
-    far: float = rule(
-        0.5, "distance from which the nearest pair is called far [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     least_dent: float = rule(
         0.1, "part of the depth below which a dent says nothing about a law [-]",
         "chosen; no measurement is kept",

@@ -12,6 +12,7 @@ from ...dynamics import Press
 from ...dynamics.mechanisms.around import surroundings_of, weaker_table
 from ...dynamics.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
+from ...recordings.checks.press import LOAD_CLASS as LOAD_CLASS
 from ...recordings.noise import bins
 from ...recordings.rules import RULES as RECORDINGS
 from ..rules import RULES
@@ -19,8 +20,6 @@ from ..rules import RULES
 SPEED_MEASURED = RULES.speed_measured
 SPEED_FROM_HEIGHT = RULES.speed_from_height
 """Systematic relative error of a speed of approach, where nothing is stated."""
-LOAD_CLASS = RECORDINGS.load_class
-"""The same of a press's load: class 1 of ISO 7500-1 allows 1 % of the indicated force."""
 
 
 @dataclass(frozen=True, slots=True)

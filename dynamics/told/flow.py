@@ -17,7 +17,6 @@ from ...models.hardening import REPRESENTATIVE
 from ..mechanisms.around import weaker_table
 from ..mechanisms.strength.strain_rate_hardening import REFERENCE_RATE
 from ..result import Impact
-from ..rules import RULES
 from ..scene import Scene
 from .band import last_blow
 from .effect import effect
@@ -26,13 +25,15 @@ from .onset import first_yield_speed
 if TYPE_CHECKING:
     from ..files.setup import Setup
 
+from ..mechanisms.strength.flow_stress import RATE
+
 
 def flow_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     """Yield the strain rate, and what rate and hardening would change where none is asked for."""
     radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
         return
-    rate = RULES.indentation_rate * scene.approach.speed / radius
+    rate = RATE * scene.approach.speed / radius
     asked = {m.name for m in setup.asked.mechanisms}
     body = setup.file.bodies[weaker_table(setup.file, setup.striker)]
     if "strain-rate-hardening" in asked:

@@ -20,9 +20,9 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.csv_table import number
 from ...core.inputs.input_file import read_bytes
-from ..rules import RULES
 from ..shared.units import LENGTH
 from ..table.file import text_rows
+from ..table.packed import TABLE_BYTES
 
 _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": "in"}
 
@@ -69,7 +69,7 @@ def read_export(path: Path) -> Export | None:
 
 
 def _rows(path: Path) -> list[list[str]]:
-    raw = read_bytes(path, most=RULES.table_bytes, allowed="a tracker's export")
+    raw = read_bytes(path, most=TABLE_BYTES, allowed="a tracker's export")
     return text_rows(raw.decode("utf-8-sig", errors="replace").splitlines(), str(path))
 
 

@@ -13,7 +13,6 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
-from ..rules import RULES
 from ..shared.units import LENGTH, UNITS
 from ..table.cells import value_of
 from ..table.channels import CHANNELS
@@ -26,6 +25,7 @@ from ..table.file import (
     text_lines,
     text_rows,
 )  # fmt: skip
+from ..table.packed import TABLE_BYTES
 from ..table.workbook import sheets_of
 from .options import PressOptions
 
@@ -113,7 +113,7 @@ def _wanted(options: PressOptions) -> tuple[tuple[str, str, tuple[str, ...], str
 
 def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     """Yield the tables of a file: instruments write several below each other into one text."""
-    checked_file(path, most=RULES.table_bytes, allowed="a table of load against depth")
+    checked_file(path, most=TABLE_BYTES, allowed="a table of load against depth")
     if path.suffix.lower() in (*BOOKS, *CHANNELS, ".zip"):
         yield read_columns(path, sheet=options.sheet)
         return

@@ -14,6 +14,9 @@ from ..shared.flank import meets_zero
 from ..shared.regression import unit_covariance
 from .cycles import Cycle, virgin
 
+_STIFFNESS_FROM, _STIFFNESS_TO = (0.5, 0.7), 0.98
+"""Loads between which the slope of unloading is read, in the largest [-] (ISO 14577-1, A.4)."""
+
 
 def contact_zero(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measured:
     """Return the depth at which the load of the loading meets zero [m].
@@ -67,14 +70,14 @@ def stiffness(load: Array, depth: Array, cycle: Cycle) -> Measured:
     Of P = B (h - h0)^m over the upper half (Oliver and Pharr, eq. 8; ISO 14577-1, A.4); its error
     holds the difference to the upper third's.
     """
-    found = [_slope(load, depth, cycle, low) for low in RULES.stiffness_from]
+    found = [_slope(load, depth, cycle, low) for low in _STIFFNESS_FROM]
     whole, upper = found
     return whole if math.isnan(upper.value) else whole.widened(0.5 * (upper.value - whole.value))
 
 
 def _slope(load: Array, depth: Array, cycle: Cycle, low: float) -> Measured:
     rows = cycle.unloading
-    part = rows[(load[rows] <= RULES.stiffness_to * cycle.peak) & (load[rows] >= low * cycle.peak)]
+    part = rows[(load[rows] <= _STIFFNESS_TO * cycle.peak) & (load[rows] >= low * cycle.peak)]
     if part.size < RULES.fewest:
         return Measured(math.nan, math.nan)
     x, y = depth[part], load[part] / cycle.peak

@@ -20,6 +20,9 @@ from ..rules import RULES
 from ..shared.regression import robust_std
 from .columns import PressRecord
 
+_HELD = 0.01
+"""Part of the load by which it may vary in a hold [-]: class 1 of ISO 7500-1."""
+
 
 class Cycle(NamedTuple):
     """One loading and unloading.
@@ -89,7 +92,7 @@ def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
 
 def _cycle(load: Array, at: int, last: int, noise: float, before: float) -> Cycle:
     peak = float(load[at])
-    held = peak - max(RULES.held * peak, 3.0 * noise)
+    held = peak - max(_HELD * peak, 3.0 * noise)
     valley = at + int(np.argmin(load[at:last]))
     near = np.flatnonzero(load[at : valley + 1] >= held)
     turn = at + int(near[-1])
@@ -98,7 +101,7 @@ def _cycle(load: Array, at: int, last: int, noise: float, before: float) -> Cycl
     peak = float(np.median(top[top >= peak - 4.0 * noise]))  # the highest sample is the noise's
     return Cycle(
         peak, first, turn, np.arange(turn, valley + 1), float(load[valley]) / peak,
-        peak > (1.0 + RULES.held) * before,
+        peak > (1.0 + _HELD) * before,
     )  # fmt: skip
 
 

@@ -21,6 +21,9 @@ from ..shared.regression import robust_std
 from .level import Levelled, filled
 from .noise import autocovariance, variance
 
+# limit: points of the smaller one at least [-]; three for each of fifteen coefficients
+_BOTTOM_POINTS = 45
+
 _POWERS = [(i, k - i) for k in range(5) for i in range(k + 1)]
 
 
@@ -84,10 +87,10 @@ def _floor(found: Levelled, start: Array, radius: float, source: str) -> _Floor:
         index = start + offsets
         ok = np.all((index >= 0) & (index < found.z.shape), axis=1)
         ok[ok] = np.isfinite(found.z[tuple(index[ok].T)])
-        if ok.sum() < RULES.bottom_points:
+        if ok.sum() < _BOTTOM_POINTS:
             raise InputError(
                 f"{int(ok.sum())} points on the floor of the crater", source=source,
-                allowed=f"{RULES.bottom_points} or more: a finer scan",
+                allowed=f"{_BOTTOM_POINTS} or more: a finer scan",
             )  # fmt: skip
         z = found.z[tuple(index[ok].T)]
         c, used = _clipped_fit(_design(u[ok]), z)
@@ -133,7 +136,7 @@ def _clipped_fit(design: Array, z: Array) -> tuple[Array, Mask]:
         c = np.linalg.lstsq(design[used], z[used], rcond=None)[0]
         off = np.abs(z - design @ c)
         new = off <= RULES.no_chance * max(robust_std(off * np.sign(z - design @ c)), 1e-15)
-        if new.sum() < RULES.bottom_points or np.array_equal(new, used):
+        if new.sum() < _BOTTOM_POINTS or np.array_equal(new, used):
             break
         used = new
     return np.asarray(np.linalg.lstsq(design[used], z[used], rcond=None)[0]), used

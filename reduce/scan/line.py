@@ -16,6 +16,9 @@ from .file import LineScan
 from .noise import autocovariance, variance
 from .walls import Section, opening
 
+# limit: points of the smaller fit on a line at least [-]
+_LINE_POINTS = 12
+
 
 @dataclass(frozen=True)
 class Groove:
@@ -107,7 +110,7 @@ def _levelled(x: Array, z: Array, source: str) -> tuple[Array, Mask, Mask]:
         gap = int(0.5 * RULES.clearance * (right - left))
         clear = np.ones_like(crater)
         clear[max(left - gap, 0) : right + gap] = False
-        if clear.sum() < max(RULES.line_points, 0.05 * x.size):
+        if clear.sum() < max(_LINE_POINTS, 0.05 * x.size):
             raise InputError(
                 "the crater leaves no undisturbed line to level on", source=source,
                 allowed="a profile some 4 crater widths long",
@@ -125,10 +128,10 @@ def _bottom(
     middle = float(x[start])
     for _ in range(8):
         near = np.abs(x - middle) <= reach
-        if near.sum() < RULES.line_points:
+        if near.sum() < _LINE_POINTS:
             raise InputError(
                 f"{int(near.sum())} points on the floor of the crater", source=source,
-                allowed=f"{RULES.line_points} or more: a finer profile",
+                allowed=f"{_LINE_POINTS} or more: a finer profile",
             )  # fmt: skip
         u = (x[near] - middle) / reach
         solver = np.linalg.pinv(np.vander(u, 5, increasing=True))

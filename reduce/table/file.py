@@ -21,12 +21,11 @@ from ...core.errors import InputError
 from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
-from ..rules import RULES
 from ..shared.units import UNITS, quantity_of
 from .cells import DAY, commas_between, instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
 from .heading import Heading, heading_of, labview_rows, unit_in
-from .packed import packed_table, tracker_rows
+from .packed import TABLE_BYTES, packed_table, tracker_rows
 from .workbook import workbook_rows
 
 BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
@@ -170,7 +169,7 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     InputError
         Not a table, or no numbers in it.
     """
-    checked_file(path, most=RULES.table_bytes, allowed="a table")
+    checked_file(path, most=TABLE_BYTES, allowed="a table")
     kind = path.suffix.lower()
     if kind == ".trk":
         names, values = tracker_rows(path, sheet)

@@ -17,8 +17,9 @@ STANDING_APART = (
     "core/drag.py", "dynamics/bits.py",  # printed curves, and polynomials of a library
     "dynamics/walk/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
 )  # fmt: skip
-# constants of nature and of definitions, formats, exit codes, places and sizes of arrays
+# constants of nature, of definitions, papers and standards, formats, exit codes, sizes of arrays
 EXACT = {
+    "campaigns/case.py": "_GROUP_DIGITS",
     "campaigns/contents.py": "SEALED_FROM _MOST_RATIO",
     "cli/doctor.py": "EXIT_ENVIRONMENT",
     "core/errors.py": "EXIT_INPUT_ERROR EXIT_NOT_CONVERGED",
@@ -29,6 +30,7 @@ EXACT = {
     "dynamics/mechanisms/arithmetic.py": "_STEEL_DENSITY",
     "dynamics/mechanisms/contact_damping.py": "_REFERENCE_DEPTH",
     "dynamics/mechanisms/rod_vibration.py": "_SIDEWAYS",
+    "dynamics/mechanisms/strength/flow_stress.py": "RATE",
     "dynamics/mechanisms/strength/strain_rate_hardening.py": "REFERENCE_RATE",
     "discrepancy/metal/estimate.py": "_FROZEN",
     "discrepancy/unknowns/followed.py": "_SURE_OF",
@@ -51,10 +53,12 @@ EXACT = {
     "dynamics/walk/compiled.py": "_LANES",
     "dynamics/walk/flight.py": "N_FAST _QUARTER",
     "dynamics/walk/land.py": "NONE AGAIN",
+    "models/choose.py": "_ELASTIC_DEPTH",
     "models/closed_form.py": "PI",
-    "models/hardening.py": "_COORDINATES",
+    "models/hardening.py": "REPRESENTATIVE _COORDINATES",
     "models/table_kernels.py": "_COLUMNS",
     "recordings/checks/limits.py": "FULLY_PLASTIC FIRST_BENDING",
+    "recordings/checks/press.py": "LOAD_CLASS",
     "recordings/checks/rigid.py": "_TURNING",
     "recordings/checks/trace.py": "_ELASTIC _PLASTIC",
     "recordings/fetch.py": "_PIECE",
@@ -65,6 +69,8 @@ EXACT = {
     "reduce/images/edge_fit.py": "_POSE",
     "reduce/images/picture_file.py": "DOWN",
     "reduce/mocap/motion.py": "SHARED OWN",
+    "reduce/press/curve.py": "_STIFFNESS_FROM _STIFFNESS_TO",
+    "reduce/press/cycles.py": "_HELD",
     "reduce/shared/regression.py": "_MAD_TO_STD",
     "reduce/scan/level.py": "LEVELS",
     "reduce/scan/picture.py": "UM",

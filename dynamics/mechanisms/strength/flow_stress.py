@@ -24,12 +24,13 @@ from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
 from ....models.rules import RULES as MODELS
 from ...force import F_RADIUS
-from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..base import Mechanism, Situation, Surroundings, Values
 
-RATE = RULES.indentation_rate
+RATE = 0.4
+"""Strain rate of an indentation over v/a [-] (Tabor 1951)."""
+
 STRAIN = REPRESENTATIVE  # of (a - a_c)/R
 
 

@@ -18,8 +18,8 @@ from ....recordings.columns import MEASURED
 from ....recordings.template import Shape
 from ...measured import Measured, Trial
 from ...reduced import Reduced
-from ...rules import RULES
 from ..file import cells_of, decoded, is_book
+from ..packed import TABLE_BYTES
 from ..picture import draw_trials
 from ..trials import TrialsReduction
 from ..workbook import NumberCell, rows_of_sheets
@@ -125,7 +125,7 @@ def read_sheet(
     InputError
         No row of headers is understood, or a column names no unit.
     """
-    checked_file(path, most=RULES.table_bytes, allowed="a sheet")
+    checked_file(path, most=TABLE_BYTES, allowed="a sheet")
     source, others, decimals, given = str(path), list[str](), "", given_columns(columns)
     if is_book(path):
         rows, head, others = _of_book(path, given, sheet)
