@@ -24,7 +24,6 @@ from dentscope.dynamics import (
 from dentscope.dynamics import surface as su
 from dentscope.models import LAWS
 from dentscope.models.published.jackson_green import JACKSON_GREEN
-from dentscope.studies.oracle.census import census
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
 IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
@@ -200,15 +199,6 @@ def test_rounding_at_rest_does_not_decide_which_way_friction_acts() -> None:
         coarse, fine = (strike(scene, Settings(tolerance=x)) for x in (1e-8, 1e-12))
         assert coarse.contacts == fine.contacts == 4
         assert coarse.restitution == pytest.approx(fine.restitution, abs=1e-6)
-
-
-def test_random_impacts_balance_and_end_above_the_surface() -> None:
-    """A small census; `python -m dentscope.studies.oracle.census 20000` is the large one."""
-    found = census(120, 7)
-    assert found.impacts == 120
-    assert sum(n for k, n in found.contacts.items() if k > 1) > 5
-    assert found.failures == {}
-    assert found.worst["energy"] < 1e-6
 
 
 def test_named_sinks_add_up() -> None:
