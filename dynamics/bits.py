@@ -47,7 +47,7 @@ def _number_from(_typing: Any, _bits: Any) -> Any:
 _number_of = intrinsic(_number_from)
 
 
-@njit(float64(float64), **_INLINE)
+@njit(**_INLINE)
 def _logarithm(x):
     """Natural logarithm of a normal positive number."""
     bits = bits_of(x)
@@ -64,7 +64,7 @@ def _logarithm(x):
     return k * _LN2[0] - ((half - (s * (half + odd + even) + k * _LN2[1])) - f)
 
 
-@njit(float64(float64), **_INLINE)
+@njit(**_INLINE)
 def _exponential(x):
     """Exponential of a number between -700 and 0."""
     k = math.floor(x * 1.44269504088896338700 + 0.5)
@@ -77,7 +77,7 @@ def _exponential(x):
     return _number_of(bits_of(y) + int64(k) * (1 << _MANTISSA))
 
 
-@njit(float64(float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def power(x, n):
     """x^n for 0 <= x <= 1 and n > 0, right to a few units in the last place."""
     if x < 1e-300:

@@ -106,7 +106,7 @@ def _numbers(striker: Striker, fluid: Fluid, angle: float, gravity: float) -> Ar
     )  # fmt: skip
 
 
-@njit(types.UniTuple(float64, 2)(float64[::1], float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _drag(p, vx, vy):
     """Force of the fluid on the striker [N]; a rod's parts along and across its axis add up."""
     d = p[_DIAMETER]

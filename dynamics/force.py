@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, njit, types
 
 from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from .bits import power
@@ -42,7 +42,7 @@ PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 """Mean pressure over yield strength under a rigid circular punch (Eq. 1.10 at a -> 0)."""
 
 
-@njit(float64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def factor(factors, column, x):
     """Interpolate a column of the table, smooth to the first derivative (Catmull and Rom)."""
     n = len(factors) // N_FACTORS
@@ -60,7 +60,7 @@ def factor(factors, column, x):
     return here + t * (m0 + t * (3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)))
 
 
-@njit(float64(float64, float64, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def cut_force(b, radius, modulus, depth):
     """Force [N] on an elastic sphere with a flat of radius b (Ejike 1969)."""
     dr = depth * radius
@@ -70,7 +70,7 @@ def cut_force(b, radius, modulus, depth):
     return 2.0 * modulus / (3.0 * radius) * (2.0 * a2 + b * b) * gap**0.5
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def static_loading(loading, par, force, factors, depth):
     """Loading force [N] at `depth` [m], measured from first touch.
 
@@ -96,7 +96,7 @@ def static_loading(loading, par, force, factors, depth):
     return f
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def law_radius(radius, par, force, factors, depth, peak):
     """Contact radius [m] of the law at `depth`, up to `peak`, with its factor there."""
     a = radius(par, depth, peak)
@@ -105,7 +105,7 @@ def law_radius(radius, par, force, factors, depth, peak):
     return a
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def static_radius(radius, par, force, factors, depth):
     """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
     b = force[FLAT]
@@ -117,7 +117,7 @@ def static_radius(radius, par, force, factors, depth):
     return min(a, force[EDGE])
 
 
-@njit(types.void(BRANCH, VECTOR, VECTOR), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _fit_power(unloading, par, branch):
     """Recognise a recovery F_m x^n, x from 0 at the residual depth to 1 at the peak.
 
@@ -200,7 +200,7 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
             branch[3] = force[RETURN] * static_loading(loading, par, force, factors, peak) / elastic
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def static_unloading(unloading, par, branch, depth):
     """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
     if depth <= branch[1] + branch[2]:
@@ -221,17 +221,16 @@ def static_unloading(unloading, par, branch, depth):
 
 
 _SLOPE_STEP = RULES.slope_step
-_WINDOW = types.UniTuple(float64, 2)
 
 
-@njit(_WINDOW(float64, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def loading_window(depth, first, last):
     """Depths about one on loading between which its slope is taken, from `first` to `last`."""
     low, high = max(depth * (1.0 - _SLOPE_STEP), first), min(depth * (1.0 + _SLOPE_STEP), last)
     return low, max(low, high)
 
 
-@njit(_WINDOW(VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def unloading_window(branch, depth):
     """Depths about one on the branch that `set_peak` prepared between which its slope is taken."""
     rest = branch[1] + branch[2]
@@ -239,12 +238,12 @@ def unloading_window(branch, depth):
     return depth - step, min(depth + step, max(branch[0], depth))
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _log_force(loading, par, force, factors, x):
     return math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _jump_between(loading, par, force, factors, low, high):
     """Logarithm of the depth just above a jump between two others; nan without one."""
     f_low = _log_force(loading, par, force, factors, low)
@@ -261,7 +260,7 @@ def _jump_between(loading, par, force, factors, low, high):
     return high if abs(f_high - f_low) > 1e-9 else math.nan
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+@njit(cache=True)
 def _meeting_point(loading, par, force, factors, x):
     """Logarithm of the depth at which the cubics through either side of a kink near x meet."""
     h = 4e-4
@@ -292,7 +291,7 @@ def _meeting_point(loading, par, force, factors, x):
     return x + 0.5 * (low + high)
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+@njit(cache=True)
 def _kink_between(loading, par, force, factors, low, high):
     """Logarithm of the depth of a kink (a jump of the slope); nan without one.
 
@@ -322,7 +321,7 @@ def _kink_between(loading, par, force, factors, low, high):
     return _meeting_point(loading, par, force, factors, x)
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+@njit(cache=True)
 def _bend_between(loading, par, force, factors, low, high):
     """Logarithm of the depth at which the curvature jumps, to about 1e-5; nan without one.
 

@@ -45,10 +45,7 @@ class Pressed(NamedTuple):
     radius: Array
 
 
-@njit(
-    float64(fo.LOADING, VECTOR, VECTOR, VECTOR, float64),
-    cache=True, _nrt=False, error_model="numpy",
-)  # fmt: skip
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _depth(loading, par, force, factors, load):
     """Depth at which the loading carries a load, by regula falsi (Illinois) over logarithms."""
     R = force[fo.RADIUS]

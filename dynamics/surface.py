@@ -32,10 +32,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import njit
 
 from ..core.arrays import Array
-from ..models.kernel import VECTOR
 from .rules import RULES
 
 # fmt: off
@@ -56,7 +55,6 @@ N_SURFACE = N_HEAD + MOST * N_IMPRINT
 _SAMPLES = 1e6
 _STEEPEST = RULES.steepest_wall
 _PLAIN = {"cache": True, "_nrt": False, "error_model": "numpy"}
-_PAIR = types.UniTuple(float64, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +133,7 @@ class Spot:
         return cls(float(row[TIP_PEAK]), float(row[TIP_FLAT]), float(row[BEGIN]), imprints)
 
 
-@njit(types.UniTuple(float64, 3)(VECTOR, int64, float64), **_PLAIN)
+@njit(**_PLAIN)
 def beside(surface, at, x):
     """Distance [m] of x from the bottom of the imprint at `at`, width of its wall, and the side."""
     if x < surface[at + START]:
@@ -147,7 +145,7 @@ def beside(surface, at, x):
     return d, max(wall, _STEEPEST * surface[at + RADIUS]), side
 
 
-@njit(_PAIR(VECTOR, float64, float64), **_PLAIN)
+@njit(**_PLAIN)
 def height(surface, count, x):
     """Depth [m] below the fresh flat at which the tip meets the flat at x, and its slope."""
     depth, slope = 0.0, 0.0
@@ -167,7 +165,7 @@ def height(surface, count, x):
     return depth, slope
 
 
-@njit(_PAIR(VECTOR, float64), **_PLAIN)
+@njit(**_PLAIN)
 def roughest(surface, count):
     """Bounds of the slope and of the curvature [1/m] of the height, wherever the tip is."""
     slope, curvature = 0.0, 0.0
@@ -182,7 +180,7 @@ def roughest(surface, count):
     return slope, curvature
 
 
-@njit(float64(float64), **_PLAIN)
+@njit(**_PLAIN)
 def lens(t):
     """Area that two circles share whose centres lie 2 t radii apart, over that of one."""
     if t >= 1.0:
@@ -190,7 +188,7 @@ def lens(t):
     return 2.0 / math.pi * (math.acos(t) - t * math.sqrt(1.0 - t * t))
 
 
-@njit(float64(VECTOR, float64), **_PLAIN)
+@njit(**_PLAIN)
 def bed(surface, x):
     """Depth of the law up to which the flat at x is a fitted, hardened bed [m]."""
     deepest = 0.0
@@ -202,7 +200,7 @@ def bed(surface, x):
     return deepest
 
 
-@njit(types.void(VECTOR, VECTOR), **_PLAIN)
+@njit(**_PLAIN)
 def press(surface, mark):
     """Enter the peak of a touch, `mark` in the form of an imprint.
 
@@ -226,7 +224,7 @@ def press(surface, mark):
         surface[at + j] = mark[j]
 
 
-@njit(types.void(VECTOR), **_PLAIN)
+@njit(**_PLAIN)
 def _merge(surface):
     """Make one imprint of the two whose bottoms lie nearest: as wide as both and nowhere higher."""
     count = int(surface[COUNT])
@@ -253,7 +251,7 @@ def _merge(surface):
     surface[COUNT] -= 1.0
 
 
-@njit(types.void(VECTOR, float64), **_PLAIN)
+@njit(**_PLAIN)
 def leave(surface, x):
     """End a touch at x: its bottom reaches to there, and the next touch stands on all of it."""
     if surface[COUNT] > surface[STANDING]:
@@ -268,7 +266,7 @@ def leave(surface, x):
     surface[STANDING] = surface[COUNT]
 
 
-@njit(_PAIR(VECTOR), **_PLAIN)
+@njit(**_PLAIN)
 def dent(surface):
     """Largest depth of the flat [m] and the place of that imprint's peak."""
     deepest, place = 0.0, surface[BEGIN]
@@ -281,7 +279,7 @@ def dent(surface):
     return deepest, place
 
 
-@njit(float64(VECTOR, float64, float64), **_PLAIN)
+@njit(**_PLAIN)
 def metal(surface, x, y):
     """Depth of the scar [m] at x along and y across the sliding direction: parabolic walls."""
     depth = 0.0
@@ -293,7 +291,7 @@ def metal(surface, x, y):
     return depth
 
 
-@njit(float64(VECTOR, float64, float64, float64, float64, float64, float64), **_PLAIN)
+@njit(**_PLAIN)
 def _edge(surface, x, y, dx, dy, far, level):
     """How far from `far`, inwards along (-dx, -dy), a scan first finds the scar below `level`."""
     step = math.hypot(dx, dy)
@@ -307,7 +305,7 @@ def _edge(surface, x, y, dx, dy, far, level):
     return far
 
 
-@njit(types.UniTuple(float64, 3)(VECTOR, float64, float64), **_PLAIN)
+@njit(**_PLAIN)
 def scar(surface, step, level):
     """Length, width at the deepest place and their difference [m].
 

@@ -16,11 +16,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import float64, int64, njit
+from numba import njit
 
 from ...core.arrays import Array, Mask
 from ...core.errors import COMPLETED, Ending, Outcome
-from ...models.kernel import VECTOR
 
 # limit: cells that are tried, halved ones counted [-]; the smooth laws of this package take 1120
 # at most
@@ -172,7 +171,7 @@ def _packed(left: Array, width: Array, own: Array, high: float, bins: int) -> Ar
     return np.concatenate([head, guide, lefts, [np.inf], coefficients.ravel()])
 
 
-@njit(int64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def cell_at(table, at, x):
     """Return the cell that holds `x`, of the table that begins at `at`."""
     bins = int(table[at + BINS])
@@ -186,10 +185,7 @@ def cell_at(table, at, x):
     return cell
 
 
-@njit(
-    float64(VECTOR, int64, int64, int64, float64),
-    cache=True, _nrt=False, error_model="numpy", forceinline=True,
-)  # fmt: skip
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def column_in(table, at, cell, column, x):
     """Return a column at `x`, which lies in `cell`."""
     first, cells = at + GUIDE + int(table[at + BINS]), int(table[at + _CELLS])
@@ -200,7 +196,7 @@ def column_in(table, at, cell, column, x):
     return low + u2 * u2 * (table[k + 4] + u * table[k + 5] + u2 * table[k + 6])
 
 
-@njit(float64(VECTOR, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def column_at(table, at, column, x):
     """Return a column at `x`."""
     return column_in(table, at, cell_at(table, at, x), column, x)

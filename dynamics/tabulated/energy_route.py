@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, njit, types
 
 from ...core.arrays import Array
 from ...core.material import Pair
@@ -115,7 +115,7 @@ def energy_impacts(
     return out
 
 
-@njit(float64(VECTOR, int64, int64, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _time(table, cell, column, y, rho):
     """Time of a branch over its way at constant speed; gravity as a series in rho."""
     sum_, power, k = column_in(table, 0, cell, column, y), rho, 1

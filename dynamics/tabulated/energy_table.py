@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, njit, types
 
 from ...core.arrays import Array
 from ...core.material import Pair
@@ -131,7 +131,7 @@ def _log_forces(loading, par, x, out):
         out[i, 0] = math.log(loading(par, math.exp(x[i])))
 
 
-@njit(float64(VECTOR, float64[:, ::1], int64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _within(edges, own, k, x):
     """Work of loading from the left end of a cell to exp(x)."""
     t = (x - edges[k]) / (edges[k + 1] - edges[k])
@@ -141,7 +141,7 @@ def _within(edges, own, k, x):
     return sum_
 
 
-@njit(float64(VECTOR, float64[:, ::1], VECTOR, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def _work(edges, own, works, power, x):
     """Work of loading to the depth exp(x)."""
     k = np.searchsorted(edges, x, side="right") - 1
@@ -151,8 +151,7 @@ def _work(edges, own, works, power, x):
     return works[k] + _within(edges, own, k, x)
 
 
-@njit(types.void(VECTOR, float64[:, ::1], VECTOR, float64, float64, int64, float64, VECTOR),
-      cache=True, _nrt=False, error_model="numpy")  # fmt: skip
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _loading_times(edges, own, works, power, x, top, work, row):
     """Time of loading over d_m sqrt(1/W), and its moments: panels of s = sqrt(1 - d/d_m)."""
     from_s = 0.0
@@ -183,8 +182,7 @@ def _loading_times(edges, own, works, power, x, top, work, row):
         end = edges[max(k + 1, 0)]
 
 
-@njit(types.void(_BRANCH, VECTOR, float64, float64, float64, VECTOR), cache=True,
-      error_model="numpy")  # fmt: skip
+@njit(cache=True, error_model="numpy")
 def _recovery(unloading, par, peak, way, work, row):
     """Returned share of the work, time of the recovery over its way sqrt(1/W_u), its moments."""
     row[RETURNED], row[RECOVERY_TIME] = 0.0, 1.0

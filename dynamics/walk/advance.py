@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import boolean, float64, int64, njit, types
+from numba import float64, njit
 
 from .. import force as fo
 from . import layout as at
 from .land import AGAIN, NONE, find_event
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .step import STAGES, step
 
 # fmt: off
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _fit_step(m, w):
     """Shorten the next step to the longest allowed, to a border, or to the end of its variable."""
     now, seen = w.now, w.seen
@@ -53,7 +53,7 @@ def _fit_step(m, w):
     now[at.STEP] = -place if landing else h
 
 
-@njit(boolean(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _give_way(m, w, error):
     """Shorten a step that failed, or change its variable; False: no step is left."""
     now = w.now
@@ -80,7 +80,7 @@ def _give_way(m, w, error):
     return not (variable < at.BY_ROOT_DEPTH and h < 1e-14 * t_ref)
 
 
-@njit(types.void(WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _go_on(w, grown):
     """Carry the end of a step over as the beginning of the next one."""
     now, seen, variable = w.now, w.seen, w.now[at.VARIABLE]
@@ -108,7 +108,7 @@ def _go_on(w, grown):
         now[at.FRESH] = now[at.TO_RATE] = float64(close)
 
 
-@njit(int64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def advance(m, w):
     """Take one step and accept what of it holds no event; return the event, NONE or AGAIN."""
     now, tally = w.now, w.tally

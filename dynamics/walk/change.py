@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, int64, njit, types
+from numba import float64, njit
 
 from .. import force as fo
 from .. import surface as su
@@ -13,7 +13,7 @@ from . import layout as at
 from .contact import kinematics, law_radius, loading_radius, penetration, place_of
 from .events import event_slope, rest_friction, rubbing, set_segment, sliding_mode
 from .flight import TOUCHED, fly
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative
 from .touch import grip
 
@@ -21,7 +21,7 @@ from .touch import grip
 _DAMPED = RULES.damped
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def note_interval(m, w):
     """Count how far the point has come on the flat."""
     tally, z = w.tally, w.z
@@ -31,7 +31,7 @@ def note_interval(m, w):
     tally[at.X_LOW], tally[at.X_HIGH] = min(tally[at.X_LOW], x), max(tally[at.X_HIGH], x)
 
 
-@njit(types.void(WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def note_half(w):
     """Count impulse and work of the approach or the departure that ends here."""
     tally, z = w.tally, w.z
@@ -45,7 +45,7 @@ def note_half(w):
     tally[at.P_MARK], tally[at.W_MARK] = z[at.P_N], z[at.WORK_N]
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def part(m, w):
     """End a contact, and follow the flight to the next one or to the end of the impact."""
     tally, z, seen = w.tally, w.z, w.seen_far
@@ -72,7 +72,7 @@ def part(m, w):
         tally[at.ENDING] = at.CONTACT_BUDGET
 
 
-@njit(types.boolean(MODEL), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def bound(m):
     """Whether a tip that has once turned back while it touched will never part.
 
@@ -85,7 +85,7 @@ def bound(m):
     return len(m.omega) == 0 and body[at.S_MASS] == math.inf and not leans
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _peak(m, w):
     """End the loading: prepare the recovery, and let tip and flat keep what this peak left."""
     branch, surface, mark, tally, now = w.branch, w.surface, w.mark, w.tally, w.now
@@ -127,7 +127,7 @@ def _peak(m, w):
     su.press(surface, mark)
 
 
-@njit(types.boolean(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def sinks(m, w):
     """Whether a tip goes down with an endless plate that bends as fast as it comes.
 
@@ -142,7 +142,7 @@ def sinks(m, w):
     return bound(m) and damped and w.z[at.VY] < 0.0
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def rest(m, w):
     """End the impact of a tip that stays on what it has pressed."""
     if w.now[at.PHASE] == at.LOAD:
@@ -154,7 +154,7 @@ def rest(m, w):
         w.kept[j] = w.z[j]
 
 
-@njit(types.void(MODEL, WORK, int64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _regrip(m, w, event):
     """Let the contact point rest, or slide off."""
     seen, now = w.seen, w.now
@@ -174,7 +174,7 @@ def _regrip(m, w, event):
         now[at.MODE] = -now[at.MODE]
 
 
-@njit(types.void(MODEL, WORK, int64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def change(m, w, event):
     """Do what the event says: another phase, another stretch, another way of sliding."""
     now, tally, z = w.now, w.tally, w.z

@@ -18,7 +18,7 @@ from .change import bound, change, part, rest, sinks
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
-from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, WORK_TUPLE, Given, Model, Work
+from .layout import MATRIX, OBSERVABLES, PLAIN, WORK_TUPLE, Given, Model, Work
 from .record import begin, finish, note, note_flight
 from .step import STAGES
 from .touch import refresh, touch
@@ -36,7 +36,7 @@ _MODES = types.Array(types.float64, 3, "C")
 _FLAGS, _PLACES = types.Array(types.boolean, 1, "C"), types.Array(int64, 1, "C")
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def walk(m, w):
     """Integrate one impact from first touch to where nothing can bring the tip back."""
     now, tally = w.now, w.tally
@@ -110,7 +110,7 @@ def _work_of(size: int, n: int, history: Array) -> Work:
     return Work._make([*(np.zeros(count) for count in vectors), *rest])
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _sum_up(m, w):
     """Fill the model's sums."""
     sums, body = m.sums, m.body

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, int64, njit, types
+from numba import float64, njit, types
 
 from ...models.kernel import VECTOR
 from .. import force as fo
@@ -15,7 +15,7 @@ from .layout import MODEL, PLAIN, WORK
 # fmt: off
 
 
-@njit(types.UniTuple(float64, 2)(float64), cache=True, forceinline=True, **PLAIN)
+@njit(cache=True, forceinline=True, **PLAIN)
 def half_turn(x):
     """Sine and cosine of half a rotation; by their series where these are exact to rounding."""
     y = x * x
@@ -27,7 +27,7 @@ def half_turn(x):
     return x * sine, cosine
 
 
-@njit(int64(VECTOR, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def tail_of(omega, sums):
     """Place in the state behind the modes; -1 where there is nothing."""
     return at.N_RIGID + 2 * len(omega) if sums[at.HAS_TAIL] > 0.0 else -1
@@ -69,7 +69,7 @@ _kinematics_inlined = njit(_SEEN, cache=True, forceinline=True, **PLAIN)(_kinema
 kinematics = njit(_SEEN, cache=True, **PLAIN)(_kinematics_of)
 
 
-@njit(types.UniTuple(float64, 2)(MODEL, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def place_of(m, z):
     """Tangential position of the tip's centre [m], 0 at first touch, and its rate [m/s]."""
     body = m.body
@@ -106,19 +106,19 @@ _penetration_inlined = njit(_MET, cache=True, forceinline=True, **PLAIN)(_penetr
 penetration = njit(_MET, cache=True, **PLAIN)(_penetration_of)
 
 
-@njit(float64(MODEL, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def law_radius(m, depth, peak):
     """Contact radius [m] of the law and the metal's strength, at a depth below a peak."""
     return fo.law_radius(m.radius, m.par, m.force, m.factors, depth, peak)
 
 
-@njit(float64(MODEL, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def loading_radius(m, depth):
     """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
     return fo.static_radius(m.radius, m.par, m.force, m.factors, depth)
 
 
-@njit(float64(MODEL, VECTOR, float64, int64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def slope_of(m, branch, depth, phase, d):
     """Slope of the static force over the depth [N/m], by a difference inside a smooth stretch."""
     if phase == at.LOAD:

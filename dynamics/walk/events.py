@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, int64, njit, types
+from numba import njit
 
-from ...models.kernel import VECTOR
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
 from .contact import contact, kinematics, loading_radius, tail_of
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative
 
 # fmt: off
@@ -20,7 +19,7 @@ from .motion import derivative
 _BREAK_GAP = 1e-13
 
 
-@njit(float64(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def sliding_mode(m, w, friction):
     """Sign of sliding that follows rest: 0 when the coefficient `friction` can hold the point.
 
@@ -34,19 +33,19 @@ def sliding_mode(m, w, friction):
     return 1.0 if pull > 0.0 else -1.0
 
 
-@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def rest_friction(m, w):
     """Coefficient that holds a resting point: static and ploughing friction together."""
     return m.body[at.MU_STATIC] + w.seen[at.PLOUGHING]
 
 
-@njit(types.boolean(MODEL), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def rubbing(m):
     """Whether there is any friction."""
     return m.body[at.MU_STATIC] > 0.0 or m.body[at.MU] > 0.0 or m.body[at.PLOUGH] > 0.0
 
 
-@njit(float64(MODEL, WORK, float64, float64, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def slip_speed(m, w, mode, ahead, z, dz, moved):
     """Speed at which a yielding contact slips [m/s]: the bodies' speed less the spring's.
 
@@ -75,7 +74,7 @@ def slip_speed(m, w, mode, ahead, z, dz, moved):
     return speed - mode * (later - limit) / (ahead * stiffness)
 
 
-@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _yielding_mode(m, w):
     """Sign of sliding at the touch of a contact that gives way sideways; 0 when it sticks.
 
@@ -90,7 +89,7 @@ def _yielding_mode(m, w):
     return mode if mode * speed > 0.0 else 0.0
 
 
-@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def first_mode(m, w):
     """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
     if m.body[at.COMPLIANCE] < math.inf:
@@ -101,7 +100,7 @@ def first_mode(m, w):
     return sliding_mode(m, w, rest_friction(m, w) if rubbing(m) else 0.0)
 
 
-@njit(float64(float64, float64, float64, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def hermite_root(g0, d0, g1, d1, h):
     """Return the fraction in (0, 1) at which the cubic through both ends vanishes."""
     low, high = 0.0, 1.0
@@ -117,7 +116,7 @@ def hermite_root(g0, d0, g1, d1, h):
     return 0.5 * (low + high)
 
 
-@njit(types.void(MODEL, WORK, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _yielding_values(m, w, z, seen, values):
     """Write the event functions of a contact that gives way sideways."""
     mode = w.now[at.MODE]
@@ -134,7 +133,7 @@ def _yielding_values(m, w, z, seen, values):
             m, w, mode, w.scales[at.AHEAD], z, w.spare, w.moved)
 
 
-@njit(types.void(MODEL, WORK, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def event_values(m, w, z, seen, values):
     """Write the event functions at a state: each falls through zero when its event happens.
 
@@ -152,7 +151,7 @@ def event_values(m, w, z, seen, values):
         _yielding_values(m, w, z, seen, values)
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def mark_active(m, w):
     """Mark the events that can end the present interval."""
     now, active = w.now, w.active
@@ -166,7 +165,7 @@ def mark_active(m, w):
     active[at.REVERSAL] = m.body[at.COMPLIANCE] < math.inf
 
 
-@njit(types.boolean(MODEL, WORK, int64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def by_chord(m, w, event):
     """Whether the event's function has no slope in closed form."""
     if event == at.SLIDE or (event == at.REST and m.body[at.COMPLIANCE] < math.inf):
@@ -178,7 +177,7 @@ def by_chord(m, w, event):
     return plate and (turns or event == at.RELOAD or event == at.BORDER)
 
 
-@njit(float64(MODEL, int64, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def event_slope(m, event, z, dz, seen, sign, pace):
     """Derivative of an event function where `pace` is dt per independent variable; 0: no form."""
     if event == at.PART:
@@ -203,7 +202,7 @@ def event_slope(m, event, z, dz, seen, sign, pace):
     return push if event == at.TURN else -push
 
 
-@njit(types.void(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def set_segment(m, w, depth):
     """Bound the loading curve to its smooth stretch around `depth`."""
     branch = w.branch
@@ -216,7 +215,7 @@ def set_segment(m, w, depth):
             break
 
 
-@njit(types.void(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def meet(m, w, x):
     """Begin a contact at x: the phase, what the law's depth is counted from, the branch.
 

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, int64, njit, types
+from numba import njit
 
-from ...models.kernel import VECTOR
 from .. import surface as su
 from . import layout as at
 from .contact import kinematics, place_of, tail_of
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 
 # fmt: off
 
@@ -35,7 +34,7 @@ N_FAST = 4
 _QUARTER = (1.57079632673412561417e0, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
 
 
-@njit(types.UniTuple(float64, 2)(float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def turned(x):
     """Cosine and sine of 0 <= x < 1e5, right to 2e-16: without branches, so that modes go in fours.
 
@@ -60,7 +59,7 @@ def turned(x):
     return (-c if quarter == 1.0 or quarter == 2.0 else c), (-s if quarter >= 2.0 else s)
 
 
-@njit(types.UniTuple(float64, 2)(VECTOR, float64, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _support(body, w, v, t):
     """Sinking of the free support and its rate after the time t."""
     b = 0.5 * body[at.S_DAMP] / body[at.S_MASS]
@@ -77,7 +76,7 @@ def _support(body, w, v, t):
     return w * (c + b * s) + v * s, v * (c - b * s) - square * w * s
 
 
-@njit(types.void(MODEL, VECTOR, float64, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _ring_down(m, z, t, z_new):
     """Write the modes after a flight of duration t, and what their damping took."""
     omega, n, tail = m.omega, len(m.omega), tail_of(m.omega, m.sums)
@@ -94,7 +93,7 @@ def _ring_down(m, z, t, z_new):
             z_new[tail + at.WORK_D] += 0.5 * (p * p + (w * q) ** 2 - p_new**2 - (w * q_new) ** 2)
 
 
-@njit(types.void(MODEL, VECTOR, float64, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def coast(m, z, t, z_new):
     """Write the state after a flight of duration t: ballistic motion, free damped vibrations."""
     body, omega = m.body, m.omega
@@ -121,7 +120,7 @@ def coast(m, z, t, z_new):
         z_new[rates + k] = p * cosine - q * w * sine
 
 
-@njit(types.UniTuple(float64, 2)(MODEL, WORK, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def clearance(m, w, z):
     """How far the tip is from the remembered surface [m], and how fast that grows [m/s].
 
@@ -137,7 +136,7 @@ def clearance(m, w, z):
     return gap, rate
 
 
-@njit(float64(float64, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _free_for(gap, rate, bound):
     """Time that nothing can happen in: gap + rate t - bound t^2/2 >= 0 before it."""
     if gap < 0.0:
@@ -148,7 +147,7 @@ def _free_for(gap, rate, bound):
     return (rate + root) / bound if rate > 0.0 else 2.0 * gap / (root - rate)
 
 
-@njit(float64(MODEL, WORK, VECTOR, float64, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _safe(m, w, z, gap, rate, bound):
     """Longest time without a touch: the slow modes by their acceleration, the rest by their reach.
 
@@ -169,7 +168,7 @@ def _safe(m, w, z, gap, rate, bound):
     return best
 
 
-@njit(types.UniTuple(float64, 2)(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _bounds(m, w):
     """Fill `w.fast`; return bounds of the rigid motion's and of the leaning gap's acceleration."""
     z, body = w.kept, m.body
@@ -194,7 +193,7 @@ def _bounds(m, w):
     return rigid, slope * aside_push + curvature * aside * aside
 
 
-@njit(float64(MODEL, WORK, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _until_clear(m, w, z):
     """About how long until no vibration and no wall can bring the leaving tip back; 0 once so.
 
@@ -225,7 +224,7 @@ def _until_clear(m, w, z):
     return -1.01 * gap / rate
 
 
-@njit(int64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def fly(m, w):
     """Follow a flight from `w.kept` to the next touch, written into `w.z`; say how it ended."""
     z0, z = w.kept, w.z

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 
-from numba import boolean, float64, int64, njit, types
+from numba import float64, njit
 
 from .. import force as fo
 from . import layout as at
 from .events import by_chord, event_slope, event_values, hermite_root, mark_active
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative, pace_of
 from .step import STAGES, step
 
@@ -25,7 +25,7 @@ NONE, AGAIN = -1, -2
 """Beside the events: the step held none; it is to be taken anew."""
 
 
-@njit(types.UniTuple(float64, 2)(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _first_crossing(m, w):
     """Return the event that the step crosses first, -1 for none, and its share of the step."""
     now, h = w.now, w.now[at.STEP]
@@ -49,7 +49,7 @@ def _first_crossing(m, w):
     return chosen, where
 
 
-@njit(boolean(MODEL, WORK, int64, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _land(m, w, chosen, x, move):
     """Go on from the end of the step, at x, to the event that lies `move` of the step away.
 
@@ -88,7 +88,7 @@ def _land(m, w, chosen, x, move):
     return False
 
 
-@njit(float64(MODEL, WORK, int64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _close_in(m, w, chosen, part):
     """Repeat the step so that it ends near the event, and land on it; return the step's error."""
     now, h, bite, leap = w.now, w.now[at.STEP], w.scales[at.BITE], w.scales[at.LEAP]
@@ -134,7 +134,7 @@ def _close_in(m, w, chosen, part):
     return error
 
 
-@njit(int64(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def find_event(m, w):
     """Return the event that ends the step just taken, and end it there; NONE, or AGAIN."""
     now, h = w.now, w.now[at.STEP]

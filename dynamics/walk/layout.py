@@ -16,7 +16,8 @@ MATRIX = types.Array(types.float64, 2, "C", readonly=False)
 FLAGS = types.Array(types.boolean, 1, "C", readonly=False)
 # The loops over the modes may be summed in vectors. Nothing in the walk
 # allocates: _nrt=False leaves out numba's counting of references, which took half of an impact.
-# Only kernels call these: wrappers for Python and C would double what is to be compiled.
+# Only kernels call these: wrappers for Python and C would double what is to be compiled, and with a
+# signature each would be read from the disk when it is imported, though its caller holds a copy.
 PLAIN = {
     "error_model": "numpy", "fastmath": {"reassoc", "contract"}, "_nrt": False,
     "no_cpython_wrapper": True, "no_cfunc_wrapper": True,

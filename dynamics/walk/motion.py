@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, int64, njit, types
+from numba import njit
 
-from ...models.kernel import VECTOR
 from .. import force as fo
 from . import layout as at
 from .contact import contact_inlined, tail_of
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 
 # fmt: off
 
 
-@njit(float64(int64, float64, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def pace_of(variable, place, seen):
     """Time per unit of the independent variable, dt / d(place)."""
     if variable == at.BY_TIME:
@@ -27,7 +26,7 @@ def pace_of(variable, place, seen):
     return 1.0 / seen[at.ACCELERATION]
 
 
-@njit(float64(VECTOR, int64, float64, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _sinking(body, tail, f, z):
     """Return the acceleration of the support's sinking."""
     if body[at.S_MASS] == math.inf:
@@ -36,8 +35,7 @@ def _sinking(body, tail, f, z):
     return (f - body[at.S_STIFF] * w - body[at.S_DAMP] * rate) / body[at.S_MASS]
 
 
-@njit(
-    types.void(VECTOR, int64, float64, VECTOR, VECTOR, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _support(body, tail, f, z, dz, sinking, pace):
     """Write the support's part of the derivative."""
     # a plate's surface gives way at a speed proportional to the force
@@ -47,9 +45,7 @@ def _support(body, tail, f, z, dz, sinking, pace):
     dz[tail + at.WORK_S] = pace * (f * rate)
 
 
-@njit(
-    float64(MODEL, WORK, VECTOR, VECTOR, VECTOR, float64, float64),
-    cache=True, forceinline=True, **PLAIN)
+@njit(cache=True, forceinline=True, **PLAIN)
 def _held(m, w, z, dz, seen, f, stiffness):
     """Return the tangential force that holds the point, or that its spring takes at rest."""
     body, omega, sums, spin = m.body, m.omega, m.sums, z[at.SPIN]
@@ -80,9 +76,7 @@ def _held(m, w, z, dz, seen, f, stiffness):
     return need
 
 
-@njit(
-    float64(MODEL, VECTOR, VECTOR, float64, float64, float64, float64),
-    cache=True, forceinline=True, **PLAIN)
+@njit(cache=True, forceinline=True, **PLAIN)
 def _ring(m, z, dz, f, ft, wall, pace):
     """Write the modes' part of the derivative; return the power that the structure loses."""
     omega, n, loss, lost = m.omega, len(m.omega), m.body[at.LOSS], 0.0
@@ -100,7 +94,7 @@ def _ring(m, z, dz, f, ft, wall, pace):
     return lost
 
 
-@njit(types.void(MODEL, WORK, int64, float64, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def derivative(m, w, variable, place, z, dz, seen):
     """Write the state's derivative and what is seen of the contact.
 

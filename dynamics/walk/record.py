@@ -5,28 +5,27 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, njit, types
+from numba import njit
 
-from ...models.kernel import VECTOR
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
 from .contact import kinematics, penetration, place_of, tail_of
 from .flight import clearance, coast
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative
 
 # fmt: off
 
 
-@njit(types.void(VECTOR, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def fill(vector, value):
     """Set all entries; numba's own way with slices compiles a broadcast."""
     for j in range(len(vector)):
         vector[j] = value
 
 
-@njit(float64(MODEL, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _reference_depth(m, energy):
     """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances.
 
@@ -47,7 +46,7 @@ def _reference_depth(m, energy):
     return d
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def begin(m, w):
     """Put the striker at its first touch and set the impact's scales."""
     body, z, scales, tally = m.body, w.z, w.scales, w.tally
@@ -100,7 +99,7 @@ def begin(m, w):
             scale[j] = scale[at.WORK_N]
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _balance(m, w):
     """Where the energy went and what momentum came from where."""
     body, out, z = m.body, w.out, w.kept
@@ -136,7 +135,7 @@ def _balance(m, w):
     out[at.O_ANGULAR] = abs(turned) / (scale * math.sqrt(inertia / mass))
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def finish(m, w):
     """Fill `w.out` with the observables, balances and counts."""
     tally, out, kept, scales = w.tally, w.out, w.kept, w.scales
@@ -175,7 +174,7 @@ def finish(m, w):
     out[first + 3], out[first + 4] = tally[at.EVALUATIONS], tally[at.STUCK]
 
 
-@njit(types.void(MODEL, WORK, VECTOR, float64, float64, float64, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _write(m, w, z, depth, gap, force, friction):
     """Write one row of the history."""
     row = w.history[int(w.tally[at.ROWS])]
@@ -192,7 +191,7 @@ def _write(m, w, z, depth, gap, force, friction):
     w.tally[at.ROWS] += 1.0
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def note(m, w):
     """Add the present state of a contact to the history, as far as there are rows left."""
     row = int(w.tally[at.ROWS])
@@ -206,7 +205,7 @@ def note(m, w):
     _write(m, w, w.z, seen[at.DEPTH], rest - seen[at.DEPTH], force, friction)
 
 
-@njit(types.void(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def note_flight(m, w, end):
     """Add the flight from the latest parting to the time `end` to the history."""
     if len(w.history) == 0:

@@ -6,11 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import float64, njit
+from numba import njit
 from scipy.integrate import DOP853
 
 from . import layout as at
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative
 
 # fmt: off
@@ -42,7 +42,7 @@ _FOURS = np.array([-(-np.count_nonzero(row) // 4) for row in _A])
 _WRONG = np.flatnonzero(_E5)
 
 
-@njit(float64(MODEL, WORK, float64), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def step(m, w, h):
     """Take one DOP853 step of h from `w.z` into `w.z_new`; return the error in tolerances.
 

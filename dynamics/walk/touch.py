@@ -9,20 +9,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, njit, types
+from numba import float64, njit
 
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
 from .contact import place_of
 from .events import event_values, first_mode, meet, slip_speed
-from .layout import MODEL, PLAIN, WORK
+from .layout import PLAIN
 from .motion import derivative, pace_of
 
 # fmt: off
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def touch(m, w):
     """Begin a contact at the present state."""
     now, tally, z = w.now, w.tally, w.z
@@ -44,7 +44,7 @@ def touch(m, w):
     now[at.MODE] = first_mode(m, w)
 
 
-@njit(types.void(WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def _by_depth(w):
     """Walk towards the next border of the loading curve by the root of the depth, else by time."""
     now, seen = w.now, w.seen
@@ -64,7 +64,7 @@ def _by_depth(w):
         now[at.AT] = math.sqrt(max(seen[at.DEPTH], 0.0))
 
 
-@njit(types.void(WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def grip(w):
     """Let a yielding contact rest; its spring keeps the friction that it slid with."""
     w.z[at.SPRING], w.now[at.MODE] = w.seen[at.TANGENTIAL], 0.0
@@ -73,7 +73,7 @@ def grip(w):
         w.z[at.SPRING] = w.z[at.SPRING] / stiff if stiff > 0.0 else 0.0
 
 
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+@njit(cache=True, **PLAIN)
 def refresh(m, w):
     """Look at the contact anew after an event: independent variable, derivative, event values."""
     now, branch, seen, z = w.now, w.branch, w.seen, w.z

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from scipy.optimize import brentq
-from scipy.stats import norm
+from scipy.special import ndtr, ndtri
 
 from ...core.unstated import unstated_equal
 from ..rules import RULES
@@ -80,14 +80,14 @@ def critical_interval(width: float, alpha: float) -> float:
     """
 
     def excess(z: float) -> float:
-        return float(norm.sf(z) + norm.sf(z + width) - alpha)
+        return float(ndtr(-z) + ndtr(-z - width) - alpha)
 
     return float(brentq(excess, 0.0, 10.0))
 
 
 def two_sided(p: float) -> float:
     """Return the number of standard deviations of a normal variable with this p value."""
-    return float(norm.isf(max(p, 1e-300) / 2.0))
+    return float(-ndtri(max(p, 1e-300) / 2.0))
 
 
 def judged(p: float, alpha: float) -> Severity:

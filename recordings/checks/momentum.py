@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from ...core.arrays import Array, Indices, Mask
 from ...core.inputs.second_sphere import StruckSphere, struck_sphere
@@ -100,7 +100,7 @@ def check_momentum(found: RecordingSet) -> list[Finding]:
     total, tests = float(misfit.sum()), int(degrees.sum())
     each = misfit / np.maximum(degrees, 1.0)
     worst = int(np.argmax(each))
-    p = float(chi2.sf(total, tests))
+    p = float(chdtrc(tests, total))
     return [
         Finding(
             "momentum",

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from ...core.rig import Quantity, StrikerTable, TargetTable
 from ..recording_set import RecordingSet
@@ -86,7 +86,7 @@ def _masses_together(bodies: list[tuple[StrikerTable, limits.Range]]) -> Finding
     factor = _factor(bodies, part)
     plain = _misfit(bodies, _part_of_the_ends(bodies))
     gain = max(plain - _misfit(bodies, part, factor), 0.0)
-    wrong = float(chi2.sf(gain, 1)) < (1.0 - RULES.alone) * FALSE_ALARMS_MASS
+    wrong = float(chdtrc(1, gain)) < (1.0 - RULES.alone) * FALSE_ALARMS_MASS
     return Finding(
         "mass of all strikers together",
         Severity.CONTRADICTION if wrong else Severity.CONSISTENT,
@@ -147,7 +147,7 @@ def check_speed(found: RecordingSet) -> list[Finding]:
     fall = np.sqrt(2.0 * g * trials.drop_height_m[both]) * share
     std = speed_std(found)[both]
     z = (speed - fall) / np.where(std > 0.0, std, limits.ROUNDING * speed)
-    p = float(chi2.sf(np.sum(z**2), z.size))
+    p = float(chdtrc(z.size, np.sum(z**2)))
     worst = int(np.argmax(np.abs(z)))
     mean = float(np.mean(speed / fall))
     return [
