@@ -73,7 +73,7 @@ def page(v: Verdict, story: Story) -> str:
         script=(_TEMPLATE / "report.js").read_text(encoding="utf-8"),
         panels=panels,
         observables=observables,
-        corrected=correction(v.corrections, key="law") if v.corrections else "",
+        corrected=correction(v.corrections) if v.corrections else "",
         mechanisms=v.mechanisms,
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from matplotlib.ticker import EngFormatter
-
 from ...core.observables import OBSERVABLES
 from ..locate import Located
 
+_PREFIXES, _UNIT = "qryzafpnµm kMGTPEZYRQ", 10
 _PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
 _WHILE = {
     "approach": "before the touch",
@@ -105,7 +104,9 @@ def quantity(value: float, unit: str) -> str:
     if unit == "kg":
         short, unit = float(f"{1e3 * value:.3g}"), "g"
     if unit in _PREFIXED:
-        return str(EngFormatter(unit)(short)).replace("\N{MINUS SIGN}", "-")
+        third = math.floor(math.log10(abs(short)) / 3.0 + 1e-9) if short else 0
+        third = min(max(third, -_UNIT), len(_PREFIXES) - 1 - _UNIT)
+        return f"{short / 1e3**third:g} {_PREFIXES[_UNIT + third].strip()}{unit}"
     plain = f"{short:.3g}" if 1e-3 <= abs(short) < 1e5 or short == 0.0 else f"{short:.2e}"
     return plain if unit in ("-", "") else f"{plain} {unit}"
 
