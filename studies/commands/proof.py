@@ -80,7 +80,6 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
     from ...core.provenance import source_commit
     from ..proof import page as pages
     from ..proof.case import open_run
-    from ..proof.follow import read_lines
     from ..proof.lists import LISTS as made
     from ..proof.rivals import read_lines as peer_lines
     from ..proof.run import ROOT, plan_of, run_folder
@@ -96,7 +95,7 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
         raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
     entry = pages.summary(
         cases, which=which, tree=tree_hash(ROOT), date=datetime.now(UTC).date().isoformat(),
-        total=len(made[which]()), commit=source_commit(), followed=read_lines(folder),
+        total=len(made[which]()), commit=source_commit(),
         peers=peer_lines(folder), plan=plan_of(Ledger(folder / "ledger.jsonl")),
     )  # fmt: skip
     _write_page(pages.keep(entry))

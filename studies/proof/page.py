@@ -13,7 +13,6 @@ from ...core.output import write_file
 from .altered import ALTERED, STAGES, altered_lines, stages_picture
 from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
-from .follow import brought
 from .power import PICTURE, picture, power_lines, read_rows, shown
 from .ranks import AT_DATA, at_data_lines, rank_lines, read_ranks
 from .rivals import compare, rival_lines
@@ -45,27 +44,24 @@ concealed, lets the diagnosis say what is missing, and only then looks at the tr
   Zerilli and Armstrong, Voce, a chain of beam elements in place of modes. Their rates have 0.5 to
   0.9 of the effect of finite elements with the same flow law, their hardening 1.3 to 1.5 times that
   ([verification](verification.md#what-hardening-and-rate-make-of-an-impact)).
-* **Nulls** are sets in which nothing is missing. In half of all sets the metal is 3 to 8 % off
-  elastic-perfect plasticity, and in half the stated numbers are off within what the data sheet
-  says. Noise is Gaussian, skewed or heavy-tailed, with outliers and empty cells.
+* **Nulls**: nothing is missing. In half of all sets the metal is 3 to 8 % off elastic-perfect
+  plasticity, in half the stated numbers are off within what the sheet says. Noise is Gaussian,
+  skewed or heavy-tailed, with outliers and empty cells.
 * **Sheets** state liquids, thin plates, blocks and heights whether they act or not, and every bench
-  has several effects and none, so that the sheet does not say what is missing: a learner that sees
-  all but the readings (`studies.peers.learned --sheets`) has 0.27 in front on 711 sets, as many as
-  the commonest answer of each kind of rig, 0.26 (sizes in pairs and outside not asked for).
-* **Outside** are six effects that have no name in the library; it knows other forms of three.
-* **Seals.** The seed is the digest of the source tree: any change of the tool draws new truths.
-  Truths and recordings are hashed into a chained ledger before the diagnosis runs, verdicts before
-  a truth is opened.
+  has several effects and none: a learner that sees all but the readings (`studies.peers.learned
+  --sheets`) has 0.27 in front on 711 sets, the commonest answer of each kind of rig 0.26.
+* **Outside** are six effects without a name in the library; it knows other forms of three.
+* **Seals.** The seed is the digest of the source tree. Truths and recordings are hashed into a
+  chained ledger before the diagnosis runs, verdicts before a truth is opened.
 * **Size** of an effect: change of all readings over their noise, less what the stated tolerances, a
   metal 5 % off and, of a pair, the other effect can imitate.
 * **First place** is where the effect is largest, in observable and condition, or within a fifth.
-* **Marks** were set before; `met` and `missed` are said only where the whole 95 % interval (Clopper
-  and Pearson) lies on one side, else `not shown`.
+* **Marks** were set before; `met` and `missed`: the whole 95 % interval (Clopper and Pearson) lies
+  on one side, else `not shown`.
 
-Made-up sets alone prove little: known effects of real recordings, concealed, are
-[interventions](interventions.md); what is said of recordings whose truth nobody knows is
-[here](verdicts-real.md). By effect and size, what verdicts turn on, other methods:
-[details](proof-details.md).
+Known effects of real recordings, concealed: [interventions](interventions.md); recordings whose
+truth nobody knows: [verdicts](verdicts-real.md). By effect and size, what verdicts turn on, other
+methods: [details](proof-details.md).
 """
 
 _DETAILS = """# Proof, in detail
@@ -91,7 +87,7 @@ None was run here; whoever has one can [try it](challenge.md) on concealed sets.
 
 def summary(
     cases: list[Case], *, which: str, tree: str, date: str, total: int, commit: str = "",
-    followed: Sequence[dict[str, Any]] = (), peers: Sequence[dict[str, Any]] = (), plan: str = "",
+    peers: Sequence[dict[str, Any]] = (), plan: str = "",
 ) -> dict[str, Any]:  # fmt: skip
     """What is kept of a run.
 
@@ -105,8 +101,6 @@ def summary(
         Number of sets on the list.
     commit
         Of the tool that was judged, if known.
-    followed
-        What proposed and random trials brought, from `follow`.
     peers
         What simple rules said of the same sets, from `rivals.read_lines`.
     plan
@@ -121,7 +115,7 @@ def summary(
         "scores": [asdict(s) for s in scores(cases)],
         "confusion": confusion(cases), "calibration": calibration(cases),
         "inclusion": inclusion(cases), "coverage": coverage_by_class(cases),
-        "by_mechanism": _by_mechanism(cases), "brought": brought(list(followed)),
+        "by_mechanism": _by_mechanism(cases),
         "power": shown(cases), "peers": compare(peers) if peers else {},
         "failures": [_told(c) for c in wrong],
     }  # fmt: skip
@@ -163,8 +157,7 @@ def details(runs: list[dict[str, Any]]) -> str:
             for name, (n, seen, right, size) in sorted(run["by_mechanism"].items())
         ]
         lines += power_lines(read_rows(run.get("power", [])))
-        lines += _inclusion_rows(run.get("inclusion", []))
-        lines += [*_brought_lines(run.get("brought", {})), ""]
+        lines += [*_inclusion_rows(run.get("inclusion", [])), ""]
     lines += altered_lines(read_ranks(ALTERED))
     lines += rank_lines(read_ranks())
     lines += at_data_lines(read_ranks(AT_DATA))
@@ -233,18 +226,6 @@ def _history(runs: list[dict[str, Any]]) -> list[str]:
             f"| `{run['tree'][:7]}`, {run['date']} | {run['sets']} | {' | '.join(cells)} |"
         )
     return [*lines, ""]
-
-
-def _brought_lines(found: dict[str, float]) -> list[str]:
-    if not found.get("sets"):
-        return []
-    return [
-        "", "### What a proposed trial brings", "",
-        f"Three more trials of {found['sets']:.0f} sets with something to tell apart: the entropy "
-        f"of the probabilities falls by {found['proposed']:.2f} nats where they are proposed, by "
-        f"{found['random']:.2f} at random places of the same rig"
-        + ("." if math.isnan(found["ratio"] or math.nan) else f": {found['ratio']:.1f} times."),
-    ]  # fmt: skip
 
 
 def _inclusion_rows(rows: list[tuple[float, float, float, int, int]]) -> list[str]:

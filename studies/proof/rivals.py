@@ -185,7 +185,7 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
     """The tables of the page."""
     if not found.get("rows"):
         return []
-    n, best = found["sets"], best_peer(found)
+    n = found["sets"]
     lines = [
         "", "### Against simple rules", "",
         f"On {n} of the sets, {found['nulls']} of them nulls and {found['outside']} outside, those "
@@ -194,16 +194,18 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
         "names of what is outside. *s*: processor seconds, of all rules together. The rules are "
         f"those of the [plan](proof-plan.md); their fits failed on {found['failed']}.", "",
         *score_rows(found),
-        "", "The diagnosis less each rule, on the same sets, with 95 % intervals:", "",
-        *less_rows(found),
+        "", "The diagnosis less each of the three best, on the same sets, with 95 % intervals:", "",
+        *less_rows(found | {"rows": best_rules(found)}), "", *verdict_lines(best_peer(found)), "",
+        "What leads, how often it is the truth:", "", f"| said | {DIAGNOSIS} |", "| --- | --- |",
     ]  # fmt: skip
-    lines += ["", *verdict_lines(best), "", "What leads, how often it is the truth:", "",
-              f"| said | {DIAGNOSIS} | {best['name']} |", "| --- | --- | --- |"]  # fmt: skip
-    both = [{(x[0], x[1]): x[2:] for x in r["ranges"]} for r in (found["rows"][0], best)]
-    for place in sorted({*both[0], *both[1]}):
-        cells = " | ".join(_of_range(r.get(place)) for r in both)
-        lines.append(f"| {place[0]:g} to {place[1]:g} | {cells} |")
-    return lines
+    own = sorted(found["rows"][0]["ranges"])
+    return lines + [f"| {low:g} to {high:g} | {_of_range(x)} |" for low, high, *x in own]
+
+
+def best_rules(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """The three rules with the most truths in front."""
+    rules = (r for r in found["rows"] if r["name"] != DIAGNOSIS)
+    return sorted(rules, key=lambda r: -int(r["front"]))[:3]
 
 
 def score_rows(found: dict[str, Any]) -> list[str]:
@@ -284,9 +286,7 @@ def _pair(found: Sequence[float], times: float, digits: int) -> str:
     return f"{mean} ({low} to {high})"
 
 
-def _of_range(found: Sequence[Any] | None) -> str:
-    if found is None:
-        return ""
+def _of_range(found: Sequence[Any]) -> str:
     mean, hits, n = found
     low, high = interval(hits, n)
     return f"{mean:.2f}: {hits / n:.2f} ({hits} of {n}; {low:.2f} to {high:.2f})"

@@ -1,13 +1,11 @@
 """Write sample sets with their truths beside them, to look at or to try a diagnosis on.
 
-`python -m dentscope.studies.proof.sample OUT --count 8 --kind single --name tilt --seed 1`
-writes OUT/sets/NAME/ (recording sets) and OUT/truths/NAME.json. The proof itself never uses these
-seeds.
+`dentscope proof sample OUT` writes OUT/sets/NAME/ (recording sets) and OUT/truths/NAME.json. The
+proof itself never uses these seeds.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -54,22 +52,3 @@ def sample(
 
 def _kind_of(name: str) -> str:
     return "single" if name in EFFECTS else ("outside" if name in OUTSIDE else "")
-
-
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("out", type=Path)
-    parser.add_argument("--count", type=int, default=8)
-    parser.add_argument("--kind", choices=KINDS, default="")
-    parser.add_argument("--name", default="")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    for _ in sample(
-        given.out, count=given.count, kind=given.kind, name=given.name, seed=given.seed
-    ):
-        pass
-
-
-if __name__ == "__main__":
-    main()

@@ -13,6 +13,7 @@ from .rivals import (
     BASELINE,
     DIAGNOSIS,
     best_peer,
+    best_rules,
     compare,
     less_rows,
     mark_of,
@@ -93,8 +94,7 @@ def third_world_lines(path: Path = FOUND) -> list[str]:
     kept = json.loads(path.read_text(encoding="utf-8"))
     found = kept["compared"]
     best = best_peer(found)
-    rules = [r for r in found["rows"] if r["name"] != DIAGNOSIS]
-    first = sorted(rules, key=lambda r: -r["front"])[:3]
+    first = best_rules(found)
     own = [r for r in found["rows"] if r["name"] == DIAGNOSIS]
     done = found["sets"]
     intro = _INTRO.format(

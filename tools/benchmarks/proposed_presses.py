@@ -9,15 +9,18 @@ stopped.
 """
 
 import argparse
+import csv
 import json
+import math
 import shutil
+import tempfile
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from dentscope.discrepancy import diagnose
 from dentscope.recordings import read
-from dentscope.studies.proof.follow import Trial, entropy, with_trials
 from dentscope.studies.proof.generators import parameters as at
 from dentscope.studies.proof.generators.folder import write_set
 from dentscope.studies.proof.generators.simulate import results_of
@@ -27,6 +30,53 @@ from power_of_presses import KINDS, SEED, mark_of, static_rows, truth_of, write_
 LEAST = 0.2  # nats of entropy below which there is nothing to tell apart
 LOADS = 4  # of a series that is offered
 SPEEDS = np.geomspace(0.02, 40.0, 60)  # m/s, of the impacts that presses are read from
+_TRIALS = 3
+
+
+class Trial(NamedTuple):
+    """A striker's name, its normal speed [m/s] and angle [degrees]."""
+
+    striker: str
+    speed: float
+    angle: float
+
+
+def entropy(verdict: dict[str, Any]) -> float:
+    """Entropy of a verdict's probabilities [nats]."""
+    p = np.array([float(x) for x in verdict["probabilities"].values()])
+    p = p[p > 0.0] / p.sum()
+    return float(-np.sum(p * np.log(p)))
+
+
+def with_trials(truth: Truth, folder: Path, trial: Trial, out: Path) -> Path:
+    """Copy a set and add trials of its truth to it."""
+    rig = truth.rig
+    which = [s.name for s in rig.strikers].index(trial.striker)
+    angle, speed = np.full(_TRIALS, math.radians(trial.angle)), np.full(_TRIALS, trial.speed)
+    slides = np.any(rig.tangential)
+    more = replace(
+        rig, which=np.full(_TRIALS, which, dtype=np.intp), angle=angle, speed=speed,
+        tangential=-speed / np.tan(angle) if slides else np.zeros(_TRIALS),
+        temperature=rig.temperature[:_TRIALS],
+    )  # fmt: skip
+    instrument = replace(truth.instrument, seed=truth.instrument.seed + 7)
+    shutil.copytree(folder, out)
+    with tempfile.TemporaryDirectory() as place:
+        added = Path(place) / "set"
+        write_set(replace(truth, rig=more, instrument=instrument), added, name=folder.name)
+        head, *rows = _rows(added)
+    before = _rows(out)
+    assert before[0] == head
+    for k, row in enumerate(rows, start=len(before)):
+        row[head.index("trial")], row[head.index("order")] = f"t{k:03d}", str(k)
+    with (out / "trials.csv").open("w", newline="", encoding="utf-8") as stream:
+        csv.writer(stream, lineterminator="\n").writerows([*before, *rows])
+    return out
+
+
+def _rows(folder: Path) -> list[list[str]]:
+    with (folder / "trials.csv").open(newline="", encoding="utf-8") as stream:
+        return list(csv.reader(stream))
 
 
 def offered(found: dict[str, Any], kind: str) -> dict[str, Any] | None:

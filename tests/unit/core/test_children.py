@@ -102,7 +102,7 @@ figures --chapter 9|verify --list|campaign designs|campaign run --design nosuch|
 campaign show nosuch|campaign refine nosuch|campaign export|campaign publish --design nosuch
 campaign repair|campaign gallery --data nosuch
 campaign reproduction --data nosuch|proof run --list nosuch|proof score --list nosuch
-proof page nosuch|proof sample s --kind nosuch|proof peers nosuch|proof library nosuch
+proof page nosuch|proof sample s --kind nosuch|proof peers nosuch
 proof laws nosuch|proof interventions nosuch|challenge get pulse.csv
 challenge score nosuch pulse.csv
 """.strip()
