@@ -134,7 +134,7 @@ Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
 Radius = Annotated[Quantity, _between(1e-9, 3.0, mm=1e-3, um=1e-6)]
 SeatRadius = Annotated[
-    Quantity, _within(lambda x: 1e-9 <= abs(x) <= 1e3, "a radius, or below 0 a seat's")
+    Quantity, _within(lambda x: 1e-9 <= abs(x) <= 1e3, "a radius up to 1000 m, or below 0 a seat's")
 ]
 Roughness = Annotated[Quantity, _between(0.0, 1e-3, um=1e-6, nm=1e-9)]
 Mass = Annotated[Quantity, _between(1e-18, 1e6)]

@@ -168,7 +168,7 @@ class Support:
         A flat of this mass [kg] on a spring [N/m] with a dashpot [N s/m].
     plate_mobility
         Zener's plate: the surface moves at this speed per force [m/(N s)],
-        1 / (8 sqrt(rho h D)).
+        1 / (8 sqrt(rho h D)); of a rod's end 1 / (rho c A).
     """
 
     mass: float = math.inf

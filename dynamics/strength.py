@@ -135,7 +135,7 @@ class StrengthTable:
 
     def _at(self, levels: Array) -> tuple[Array, Array, Array]:
         """Levels, logarithms over those as stated, (N_FACTORS, levels, NODES), and slopes."""
-        pairs = [_stronger(self.pair, math.exp(level)) for level in levels]
+        pairs = [stronger(self.pair, math.exp(level)) for level in levels]
         logs = np.stack(_logs(self.law, pairs, self.depth))
         unit = int(np.searchsorted(levels, -1e-9))  # the stated strength
         logs -= logs[:, unit : unit + 1]
@@ -193,7 +193,9 @@ def _log_radius(depth: Array, radius: Array) -> Array:
     return np.array([np.interp(x, x[k], np.log(row[k])) for row, k in rows])
 
 
-def _stronger(pair: Pair, factor: float) -> Pair:
+def stronger(pair: Pair, factor: float) -> Pair:
+    """Return the pair with strengths times a factor; what is rigid stays so."""
+
     def body(plain: Material) -> Material:
         return plain if plain.rigid else plain.strengthened(factor)
 

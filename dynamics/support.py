@@ -1,4 +1,4 @@
-"""How the flat gives way: on a spring, as a plate that carries waves off, as a half-space."""
+"""How the flat gives way: on a spring, as a half-space, as a plate or rod that waves run along."""
 
 from __future__ import annotations
 
@@ -27,6 +27,20 @@ def plate_support(material: Material, *, thickness: float) -> Support:
         raise InputError(f"{thickness:g}", key="thickness_m", allowed="a number above 0")
     bending = material.E * thickness**3 / (12.0 * (1.0 - material.nu**2))
     return Support(plate_mobility=1.0 / (8.0 * math.sqrt(material.density * thickness * bending)))
+
+
+def rod_support(material: Material, *, radius: float) -> Support:
+    """A rod without end, struck on its end: that moves at F / (rho c A), c = sqrt(E/rho).
+
+    Valid while nothing has come back from the far end, for a contact small against the rod.
+
+    References
+    ----------
+    W. Goldsmith, Impact (1960), chapter IV (longitudinal impact of spheres on rods).
+    """
+    _check(material)
+    area = math.pi * radius**2
+    return Support(plate_mobility=1.0 / (math.sqrt(material.E * material.density) * area))
 
 
 def sprung_support(mass: float, stiffness: float, *, damping: float = 0.0) -> Support:

@@ -59,11 +59,17 @@ class TurnedLaw(ContactLaw):
         self.law.warn_outside(pair.turned if one else [p.turned for p in pair], depth)  # type: ignore[union-attr]
 
 
+def as_made(law: ContactLaw, pair: Pair) -> tuple[ContactLaw, Pair]:
+    """Return the law itself, and the pair as that has it: of a turned law turned back."""
+    return (law.law, pair.turned) if isinstance(law, TurnedLaw) else (law, pair)
+
+
 @lru_cache(maxsize=64)
 def turned(law: ContactLaw) -> ContactLaw:
     """Return the law with sphere and flat in each other's place.
 
-    A law of one solved pair stays as it is: that pair was solved as its bodies stand.
+    A law of one solved pair stays as it is, for that pair was solved as its bodies stand; so does
+    one that is turned.
 
     Examples
     --------
@@ -74,10 +80,8 @@ def turned(law: ContactLaw) -> ContactLaw:
     >>> float(turned(law).loading(pair.turned, 1e-5) / law.loading(pair, 1e-5))
     1.0
     """
-    if isinstance(law, AnchoredLaw | TableLaw):
+    if isinstance(law, AnchoredLaw | TableLaw | TurnedLaw):
         return law
-    if isinstance(law, TurnedLaw):
-        return law.law
     return TurnedLaw(
         name=law.name, title=law.title, source=law.source, equations=law.equations,
         standing=law.standing, domain=law.domain, breaks=law.breaks, read=law.read,

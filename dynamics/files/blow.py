@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from ...core.tables import frame, html_table, text_table
 from ...models.base import ContactLaw
 from ...models.choose import demand, objection
 from ...models.shelf import UnknownLaw
+from ...models.turned import as_made
 from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..rules import RULES
@@ -134,11 +135,12 @@ class Blow:
     @cached_property
     def doubts(self) -> dict[str, str]:
         """What speaks against a law at the depth of its blow, by its name."""
+        scenes = [self.setup.scene(law) for law in self.laws]
         told = {
             law.name: objection(
-                law, demand(self.setup.scene(law).pair, self[law.name].peak_depth_m)
+                law, demand(as_made(scene.law, scene.pair)[1], self[law.name].peak_depth_m)
             )
-            for law in self.laws
+            for law, scene in zip(self.laws, scenes, strict=True)
         }
         return {name: against for name, against in told.items() if against}
 
@@ -167,7 +169,7 @@ class Blow:
             which the blow did not end nothing.
         """
         ended = [law for law, one in self.impacts.items() if one.outcome.completed]
-        shown = dict(zip(ended, _shown(self[law] for law in ended), strict=True))
+        shown = dict(zip(ended, _shown([self[law] for law in ended]), strict=True))
 
         def row(label: str, key: str, scale: float, unit: str) -> tuple[str, ...]:
             cells = [
@@ -262,16 +264,16 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
 _LEFT = ("residual_flat_m", "residual_sphere_m")
 
 
-def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
+def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
     """What is shown of each; 0 for what rounding alone has left and a dent below an atom."""
     columns = [{key: float(getattr(one, key)) for _, key, _, _ in SHOWN} for one in impacts]
-    largest: dict[str, float] = {}
-    for _, key, _, unit in SHOWN:
+    largest = {"mJ": max((one.kinetic_before_J for one in impacts), default=0.0)}
+    for _, key, _, unit in SHOWN if columns else ():
         largest[unit] = max([largest.get(unit, 0.0), *(abs(values[key]) for values in columns)])
     return [
         {
             key: 0.0
-            if unit != "-" and abs(values[key]) <= _least(key, largest[unit])
+            if key not in EXACT and abs(values[key]) <= _least(key, largest[unit])
             else values[key]
             for _, key, _, unit in SHOWN
         }

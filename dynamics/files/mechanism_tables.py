@@ -89,7 +89,7 @@ def _made_again(name: str, values: dict[str, Any], given: set[str]) -> InputTabl
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),
     "half-space-waves": (
-        "impact.support", lambda file: file.impact.support in ("plate", "half-space"),
+        "impact.support", lambda file: file.impact.support in ("plate", "half-space", "rod"),
     ),
     "rod-longitudinal-waves": ("impact.modes", lambda file: file.impact.modes > 0),
     "rod-flexural-vibration": ("impact.modes", lambda file: file.impact.modes > 0),
@@ -133,8 +133,8 @@ def _falls(file: SetupFile) -> bool:
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
-    known = mechanism.published(around)
-    given = {name: getattr(table, name) for name in known}
+    given = {p.name: getattr(table, p.name) for p in mechanism.parameters}
+    known = mechanism.published(around, sized=given[mechanism.parameters[0].name] is not None)
     return {**known} | {name: number.value for name, number in given.items() if number is not None}
 
 

@@ -13,7 +13,7 @@ from ...core.inputs.rig_numbers import RigNumbers
 from ...models.base import ContactLaw
 from ..beam import rod_modes
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
-from ..support import half_space_radiation, plate_support, sprung_support
+from ..support import half_space_radiation, plate_support, rod_support, sprung_support
 from .bodies import bodies_of, flowing
 from .second import second_of
 
@@ -56,6 +56,8 @@ def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: 
         )  # fmt: skip
     elif impact.support == "plate":
         support = plate_support(pair.flat, thickness=of["target.thickness_m"])
+    elif impact.support == "rod":
+        support = rod_support(pair.flat, radius=impact.support_radius_m)
     elif impact.support == "half-space":
         radiation = half_space_radiation(pair.flat)
     edge = striker.radius if impact.finite_tip and rod else math.inf

@@ -85,8 +85,10 @@ class ImpactTable(InputTable):
     """Vibrations of the rod that are simulated, lowest first; 0: a rigid rod."""
     loss_factor: float = Field(default=0.0, ge=0.0, lt=1.0)
     """Their damping."""
-    support: Literal["rigid", "sprung", "plate", "half-space"] = "rigid"
-    """How the flat rests."""
+    support: Literal["rigid", "sprung", "plate", "half-space", "rod"] = "rigid"
+    """How the flat rests; "rod": it is the end of a long one, struck along its axis."""
+    support_radius_m: float = Field(default=0.0, ge=0.0)
+    """Radius of that rod."""
     support_damping_N_s_m: float = Field(default=0.0, ge=0.0)
     """Damping of a sprung support."""
     finite_tip: bool = False
@@ -339,7 +341,9 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("target.support_mass_kg", "missing", "the mass of a sprung support")
     if impact.support == "plate" and found.target.thickness_m is None:
         add("target.thickness_m", "missing", "the thickness of the plate")
-    if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
+    if impact.support == "rod" and not impact.support_radius_m > 0.0:
+        add("impact.support_radius_m", "missing", "the radius of the rod whose end is struck")
+    if impact.support in ("plate", "half-space", "rod") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
     striker = found.strikers.get(found.striker)
     if found.sweep.mass_kg and striker is not None and striker.inertia_kg_m2 is not None:

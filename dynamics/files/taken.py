@@ -92,6 +92,9 @@ def _of_the_flat(target: TargetTable, impact: Any, line: Any) -> Iterator[InputE
                 yield line(f"target.{name}", value, allowed)
         if impact.support_damping_N_s_m:
             yield line("impact.support_damping_N_s_m", impact.support_damping_N_s_m, allowed)
+    if impact.support_radius_m and impact.support != "rod":
+        allowed = 'with impact.support = "rod"'
+        yield line("impact.support_radius_m", impact.support_radius_m, allowed)
     if impact.loss_factor and not impact.modes:
         yield line("impact.loss_factor", impact.loss_factor, "with impact.modes above 0")
 
@@ -121,11 +124,16 @@ def _stated(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
 
 
 def taken_elsewhere(content: dict[str, Any], *, source: str) -> Iterator[InputError]:
-    """Yield a line for each table of CASE.toml, which an impact has no equation for."""
+    """Yield a line for what an impact has elsewhere, or has no equation for."""
     strikers = content.get("strikers")
     bodies = {"target": content.get("target")}
     if isinstance(strikers, dict):
         bodies |= {f"strikers.{name}": body for name, body in strikers.items()}
+    if isinstance(content.get("target"), dict) and content["target"].get("shape") == "rod":
+        yield InputError(
+            "'rod'", source=source, key="target.shape",
+            allowed='"flat" or "sphere"; a rod struck on its end: impact.support = "rod"',
+        )  # fmt: skip
     for key, body in bodies.items():
         for name, allowed in _OF_A_CASE.items():
             if isinstance(body, dict) and name in body:

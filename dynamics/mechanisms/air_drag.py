@@ -17,6 +17,8 @@ from ..rules import RULES
 from ..scene import Scene, Striker
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
+# limit: fall below which none is followed [m]
+_SHORTEST = 1e-9
 _GASES = ("", "air", "none", "dry", "nitrogen")
 
 
@@ -48,6 +50,7 @@ class AirDrag(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
     form: ClassVar[float] = 0.05
+    in_flight: ClassVar[bool] = True
     reads: ClassVar[tuple[str, ...]] = tuple(
         f"environment.{name}"
         for name in ("fluid", "viscosity_Pa_s", "density_kg_m3", "pressure_Pa", "temperature_K")
@@ -74,6 +77,10 @@ class AirDrag(Mechanism):
             )
         if 0.0 in (around.pressure, around.density):
             return "there is no air, as stated"
+        if around.from_height and not all(
+            _arriving(s, self.published(around), around) > 0.0 for s, _ in situations
+        ):
+            return f"{around.fluid.strip()} bears the striker: it does not fall"
         if (largest := self._largest(situations)) < RULES.visible:
             what = around.fluid.strip() if liquid else "air"
             return f"{what} takes at most {largest:.1e} of a speed"
@@ -132,7 +139,7 @@ def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:
     fluid = _fluid(values, around)
     arrived = _fallen(scene.striker, fluid, start, fall, a.tangential, a.angle, g)
     # one that the fluid stops keeps a twentieth, so that there is an impact
-    return float(np.fmax(arrived, 0.05 * stated))
+    return float(np.fmax(arrived, 0.0 if around.from_height else 0.05 * stated))
 
 
 # every fall is asked for before the motion and after it
@@ -141,11 +148,16 @@ def _fallen(
     striker: Striker, fluid: Fluid, start: float, fall: float, tangential: float, angle: float,
     gravity: float,
 ) -> float:  # fmt: skip
-    """Normal speed after a fall that begins with `start` [m/s]; nan where the fluid stops it."""
+    """Normal speed after a fall that begins with `start` [m/s]; nan where the fluid stops it.
+
+    A step longer than the way to the terminal speed has no answer: that speed is reached before.
+    """
     arrived = flown(
         striker, fluid, normal=-start, rise=-fall, tangential=tangential, angle=angle,
         gravity=gravity,
     )  # fmt: skip
+    if start == 0.0 and fall > _SHORTEST and not math.isfinite(arrived.normal):
+        return _fallen(striker, fluid, start, 0.5 * fall, tangential, angle, gravity)
     return float(-arrived.normal)
 
 

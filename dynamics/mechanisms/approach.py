@@ -32,6 +32,7 @@ class ImpactSpeedLoss(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"permanent_depth_m": -1, "peak_force_N": -1}
     form: ClassVar[float] = 0.05
+    in_flight: ClassVar[bool] = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs speeds computed from heights."""
@@ -69,6 +70,7 @@ class Tilt(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {}
     form: ClassVar[float] = 0.05
+    in_flight: ClassVar[bool] = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""

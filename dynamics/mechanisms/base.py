@@ -175,6 +175,8 @@ class Mechanism(ABC):
     mutual
         Whether what it takes of the approach goes to the struck body: of both it keeps the
         momentum.
+    in_flight
+        Whether it acts before the touch: the others meet what it has left of the approach.
     rests_on
         Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
         state one, the mechanism is not tried: its constants would be those of the assumption.
@@ -195,6 +197,7 @@ class Mechanism(ABC):
     named: ClassVar[bool] = True
     static: ClassVar[bool] = False
     mutual: ClassVar[bool] = False
+    in_flight: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()
     reads: ClassVar[tuple[str, ...]] = ()
 
@@ -233,14 +236,14 @@ class Mechanism(ABC):
         """Return the parameters that the rig itself states."""
         return {}
 
-    def usual(self, around: Surroundings) -> Values:
-        """Return the parameters that a source has for usual rigs."""
+    def usual(self, around: Surroundings, *, sized: bool = False) -> Values:
+        """Return the parameters that a source has for usual rigs; `sized`: the first is stated."""
         return {p.name: p.literature.value for p in self.parameters if p.literature}
 
-    def published(self, around: Surroundings) -> Values:
+    def published(self, around: Surroundings, *, sized: bool = False) -> Values:
         """Return all parameters as stated or usual; neutral where there is neither."""
         neutral = {p.name: p.neutral for p in self.parameters}
-        return neutral | dict(self.usual(around)) | dict(self.stated(around))
+        return neutral | dict(self.usual(around, sized=sized)) | dict(self.stated(around))
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Return the parameters with the ranges that this rig allows."""
@@ -261,8 +264,10 @@ class Mechanism(ABC):
 
 
 def _acting(mechanisms: Sequence[Mechanism], constants: Constants) -> list[Mechanism]:
+    """Those that are not neutral, in the order in which they act: flight first."""
     sizes = [(m, m.parameters[0]) for m in mechanisms]
-    return [m for m, size in sizes if constants[m.name][size.name] != size.neutral]
+    acting = [m for m, size in sizes if constants[m.name][size.name] != size.neutral]
+    return sorted(acting, key=lambda m: not m.in_flight)
 
 
 def attached(
@@ -283,14 +288,24 @@ def observed(
 ) -> Mapping[str, Array]:
     """Return the observables after the motion, with what attached mechanisms change of them.
 
-    Undone in the order of attachment: the last change of the approach was the innermost.
+    Undone in the order of attachment: the last change of the approach was the innermost. Each is
+    shown the approach that those in flight before it have left.
     """
-    for m in reversed(_acting(mechanisms, constants)):
-        moved = np.array([m.acts_on(scene) for scene, _ in situations])
+    met: list[tuple[Mechanism, Sequence[Situation]]] = []
+    for m in _acting(mechanisms, constants):
+        met.append((m, situations))
+        if m.in_flight:
+            values = constants[m.name]
+            situations = [
+                (m.attach(s, values, around) if m.acts_on(s) else s, around)
+                for s, around in situations
+            ]
+    for m, here in reversed(met):
+        moved = np.array([m.acts_on(scene) for scene, _ in here])
         if moved.all():
-            seen = m.after(situations, constants[m.name], seen)
+            seen = m.after(here, constants[m.name], seen)
             continue
-        some = [one for one, here in zip(situations, moved, strict=True) if here]
+        some = [one for one, acts in zip(here, moved, strict=True) if acts]
         after = m.after(some, constants[m.name], {k: v[moved] for k, v in seen.items()})
         seen = {k: _placed(v, moved, after[k]) for k, v in seen.items()}
     return seen

@@ -56,10 +56,15 @@ class SqueezeFilm(Mechanism):
             return f"air takes at most {loss:.1e} of the approach speed; no liquid is stated"
         return ""
 
-    def usual(self, around: Surroundings) -> Values:
-        """Of a stated viscosity what stops an immersed sphere at the Stokes number that is seen."""
+    def usual(self, around: Surroundings, *, sized: bool = False) -> Values:
+        """Of a stated viscosity what stops an immersed sphere at the Stokes number that is seen.
+
+        That liquid is all around: it holds the parting bodies back as it held the meeting ones.
+        """
         eta = around.viscosity
-        return {"film_drag_Pa_s": RULES.critical_stokes * eta} if eta > 0.0 else {}
+        if sized or not eta > 0.0:
+            return {}
+        return {"film_drag_Pa_s": RULES.critical_stokes * eta, "film_exit_share": 1.0}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um.

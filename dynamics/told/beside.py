@@ -13,11 +13,13 @@ from ...core.material import Pair
 from ...models import law_named
 from ...models.base import ContactLaw, DomainWarning
 from ...models.fitted import ClosedForm
+from ...models.turned import as_made
 from ...models.uncertainty import Uncertainty
 
 
 def error_of(law: ContactLaw, pair: Pair, depth: Array) -> Uncertainty:
     """How far `law` may be off, by itself or, where it states no error, by the fitted law."""
+    law, pair = as_made(law, pair)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         try:

@@ -16,18 +16,17 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...core.inputs.materials import materials, unlisted
-from ...core.rig import TABOR, Quantity, value_of
+from ...core.rig import TABOR, Quantity
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
-from ..mechanisms.base import Surroundings
-from ..mechanisms.half_space_waves import HalfSpaceWaves
+from ...models.turned import as_made
 from ..result import Impact
-from ..rules import RULES
 from ..scene import Scene
 from .band import last_blow, repeated
-from .effect import ATOM, effect
+from .effect import effect
+from .flat import bending, flat_checks
 from .flow import flow_checks
-from .onset import effective_mass, first_yield_speed, largest_mean_pressure
+from .onset import as_strong, effective_mass, first_yield_speed, largest_mean_pressure
 
 if TYPE_CHECKING:
     from ..columns import Impacts
@@ -53,13 +52,16 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     scene = setup.scene(law)
     if not found.restitution > 0.0:
         # what has made it stay
-        return [*_resting(scene, found), *_mechanisms(setup, law, found)]
+        return [
+            *_repeats(setup), *_resting(scene, found), *bending(setup, scene, found),
+            *_mechanisms(setup, law, found),
+        ]  # fmt: skip
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _repeats(setup), _onset(setup, scene, found), flow_checks(setup, scene, found),
-            _either(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
-            _walls(scene, found), _gravity(setup, scene, found),
+            _repeats(setup), _deep(scene, found), _onset(setup, scene, found),
+            flow_checks(setup, scene, found), _either(scene, found),
+            flat_checks(setup, scene, found), _walls(scene, found), _gravity(setup, scene, found),
             _friction(setup, scene, found), _rod(scene, found),
             _two_radii(setup), _edge(setup, scene, found),
             _second(setup, scene, found), _bodies(setup, law),
@@ -69,14 +71,16 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
 
 
 def _resting(scene: Scene, found: Impact) -> Iterator[str]:
-    if not found.peak_depth_m > 0.0:
+    if found.contact_time_s > 0.0:
+        yield "no rebound: what is taken after the contact leaves nothing of it"
+    elif not found.peak_depth_m > 0.0:
         yield "no touch: the film takes the whole approach (below the critical Stokes number)"
     elif not scene.support.plate_mobility > 0.0:
         yield "no rebound: what the contact would give back does not lift the weight: it stays"
     else:
         yield (
-            "no rebound: bending the plate takes the whole blow; it is without end (Zener), so "
-            "nothing that its edges throw back is in this"
+            "no rebound: waves along the plate or rod carry the whole blow off; it is without end, "
+            "so nothing that comes back from there is in this"
         )
 
 
@@ -93,12 +97,13 @@ def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         what = "elastic, as target.law has it" if asked else "neither body yields"
         yield f"{what}{': ' if mean else ''}{mean}"
         return
-    over = f"; {mean}, {pressure / pair.Sy_min:.3g} times the weaker strength" if mean else ""
+    there = as_strong(scene, found.peak_depth_m)
+    over = f"; {mean}, {pressure / there.Sy_min:.3g} times the weaker strength" if mean else ""
     speed = first_yield_speed(scene)
     if speed == 0.0:
         yield "first yield at the edge of the tip's flat, at any speed"
         return
-    regime = demand(pair, found.peak_depth_m).regime
+    regime = demand(as_made(scene.law, there)[1], found.peak_depth_m).regime
     yield (
         f"first yield at {speed:.3g} m/s; here {scene.approach.speed / speed:.3g} times that "
         f"({regime}){over}"
@@ -126,49 +131,12 @@ def _either(scene: Scene, found: Impact) -> Iterator[str]:
         )
 
 
-def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    thickness = setup.file.target.thickness_m
-    if thickness is None:
-        return
-    h = thickness.value
-    dent = found.residual_flat_m
-    if found.peak_depth_m >= h:
+def _deep(scene: Scene, found: Impact) -> Iterator[str]:
+    if found.peak_depth_m > scene.striker.radius:
         yield (
-            f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the flat is thick, "
-            f"{h * 1e3:.3g} mm: it would be pierced, and no number here holds"
+            f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the radius: the bodies "
+            "would go through each other, and no number here holds"
         )
-    a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
-    if dent > ATOM:
-        # the standard's dents are wider than 0.24 of the ball, and 8 of their depths than a radius
-        enough = "thick" if h >= max(RULES.thick * dent, a) else "NOT thick"
-        yield (
-            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "
-            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
-            f"{a * 1e3:.2g} mm"
-        )
-    else:
-        if not a > 0.0:
-            return
-        yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
-
-
-def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    """What waves into the flat would do: a plate of its thickness, else a half-space."""
-    flat, support = scene.pair.flat, setup.file.impact.support
-    asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
-    other = support not in ("rigid", "plate") or setup.second is not None
-    if asked or other or flat.rigid or math.isnan(flat.density):
-        return
-    # Zener's plate is the thin one; this one has its thickness
-    without = scene.with_(support=replace(scene.support, plate_mobility=0.0))
-    thick = Surroundings(thickness=value_of(setup.file.target.thickness_m))
-    waves = HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick)
-    told = effect(repeated(setup, waves), found)
-    if support == "plate":
-        yield f"with waves across its thickness too (mechanisms.half-space-waves): {told}"
-    else:
-        plate = thick.thickness > 0.0
-        yield f"{'hung freely as a wide plate' if plate else 'waves into a deep flat'}: {told}"
 
 
 def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
@@ -292,7 +260,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if scene.approach.speed > first_yield_speed(scene):
         off = float(second.departure(scene.pair, found.peak_depth_m))
         yield (
-            f"beyond yield 1/R is an approximation, off by some {100.0 * off:.1f} % of the force "
+            f"beyond yield 1/R is an approximation, off by some {100.0 * off:.2g} % of the force "
             "here, as finite elements have it"
         )
     if second.radius < 0.0:
@@ -312,6 +280,9 @@ def _mechanisms(setup: Setup, law: ContactLaw, found: Impact) -> Iterator[str]:
     for m in setup.acting(plain).mechanisms:
         without = last_blow(setup.with_mechanism(m.name, None), law)
         yield f"{m.name} ({m.title}): {effect(found, without)}"
+    met = setup.scene(law).approach.speed
+    if found.peak_depth_m > 0.0 and abs(met / plain.approach.speed - 1.0) > _WORTH_A_LINE:
+        yield f"it touches with {met:.4g} m/s, in place of {plain.approach.speed:.4g} m/s"
 
 
 def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
@@ -355,7 +326,7 @@ def outside(law: ContactLaw, scene: Scene, found: Impact) -> str:
         return ""  # Hertz; the law of a flow curve has lines of its own
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", DomainWarning)
-        law.warn_outside(scene.pair, found.peak_depth_m)
+        scene.law.warn_outside(scene.pair, found.peak_depth_m)
     return "; ".join(str(one.message) for one in caught)
 
 

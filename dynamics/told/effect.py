@@ -13,8 +13,10 @@ def effect(other: Impact, found: Impact) -> str:
     if not other.outcome.completed:
         return "the tip does not part within the budgets"
     ratios = {"restitution": other.restitution / found.restitution}
-    if found.residual_flat_m > ATOM:
-        ratios = {"dent": other.residual_flat_m / found.residual_flat_m, **ratios}
+    # the dent of the body that keeps most of it
+    key = max(("residual_flat_m", "residual_sphere_m"), key=lambda name: getattr(found, name))
+    if getattr(found, key) > ATOM:
+        ratios = {"dent": getattr(other, key) / getattr(found, key), **ratios}
     told = {name: _percent(ratio) for name, ratio in ratios.items()}
     if set(told.values()) == {_percent(1.0)} and found.rebound_spin_rad_s != 0.0:
         told["spin"] = _percent(other.rebound_spin_rad_s / found.rebound_spin_rad_s)

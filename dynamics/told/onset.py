@@ -15,7 +15,7 @@ from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
-from ..strength import strength_table
+from ..strength import strength_table, stronger
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,23 @@ def first_yield_speed(scene: Scene) -> float:
     pair = scene.pair
     if scene.striker.tip_flat_radius > 0.0 and math.isfinite(pair.Sy_min):
         return 0.0
-    onset = first_yield(pair)
+    onset = first_yield(as_strong(scene))
     return math.inf if onset is None else onset.speed(effective_mass(scene))
+
+
+def as_strong(scene: Scene, depth: float = math.nan) -> Pair:
+    """Return the pair as strong as it is in the blow, at a depth [m] or where it first yields."""
+    if not scene.flow or not math.isfinite(scene.pair.Sy_min):
+        return scene.pair
+    table = strength_table(scene.law, scene.pair)
+    strength, log_depth = np.log(scene.strengths(table)), table.log_depth
+    if math.isnan(depth):
+        # the depth of first yield goes as the square of the strength there
+        beyond = log_depth - 2.0 * strength - math.log(scene.pair.first_yield * scene.pair.R)
+        at = np.interp(0.0, np.maximum.accumulate(beyond), log_depth)
+    else:
+        at = math.log(depth)
+    return stronger(scene.pair, math.exp(float(np.interp(at, log_depth, strength))))
 
 
 def largest_mean_pressure(scene: Scene, found: Impact) -> float:

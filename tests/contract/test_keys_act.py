@@ -45,6 +45,7 @@ ROD = BALL.replace('shape = "sphere"', 'shape = "rod"\nradius_m = 0.005\nlength_
 )
 BARE = BALL.replace("Sy_Pa = 3.05e8\n", "").replace("angle_deg = 60\n", "")
 UPRIGHT = BALL.replace("angle_deg = 60\n", "")
+ON_ROD = BALL.replace("angle_deg", 'support = "rod"\nsupport_radius_m = 0.01\nangle_deg')
 SPRUNG = BALL.replace("angle_deg", 'support = "sprung"\nangle_deg').replace(
     "thickness_m", "support_mass_kg = 0.5\nsupport_stiffness_N_m = 1e6\nthickness_m"
 )
@@ -117,6 +118,7 @@ Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
     ("[impact]", "loss_factor"): (VIBRATES, "0.05"),
     ("[impact]", "support"): (BALL, '"plate"'),
     ("[impact]", "support_damping_N_s_m"): (SPRUNG, "3000.0"),
+    ("[impact]", "support_radius_m"): (ON_ROD, "0.02"),
     ("[impact]", "finite_tip"): (THIN, "true"),
     ("[impact]", "repeats"): (BALL, "2"),
     ("[impact]", "flight_s"): (VIBRATES, "0.0"),
@@ -131,7 +133,9 @@ Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
     ("[sweep]", "approach_spin_rad_s"): (BALL, "[10.0, 20.0]"),
 }  # fmt: skip
 OIL = BALL + '[environment]\nfluid = "oil"\n'
-HOT = BALL.replace("angle_deg", "temperature_K = 600.0\nangle_deg")
+HOT = BALL.replace("angle_deg", "temperature_K = 600.0\nangle_deg").replace(
+    "[target]", "[target]\nmelting_K = 1790.0"
+)
 EDGED = ROD.replace("radius_m = 0.005\nlength", "radius_m = 0.0006\nlength")
 DROPPED = BALL.replace("impact_speed_m_s = 1.0", "drop_height_m = 0.3")
 FALLS = DROPPED + "[sweep]\ndrop_height_m = [0.1, 0.3]\n"

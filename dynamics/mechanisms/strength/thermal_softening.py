@@ -74,6 +74,8 @@ class ThermalSoftening(FlowMechanism):
     def idle(self, situations: Sequence[Situation]) -> str:
         """The law ends where the metal melts, and begins at the reference temperature."""
         for _, around in situations:
+            if not around.melting > 0.0:
+                return "melting_K of the body that yields first is not stated"
             first = around.ambient
             last = first + RULES.hottest * (_melting(around) - first)
             if not first <= around.temperature <= last:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.dynamics import Approach, Scene, Striker, strike
-from dentscope.dynamics.drag import flown
 from dentscope.dynamics.files.blow import blow_of
 from dentscope.dynamics.files.setup import Setup, setup_of
 from dentscope.dynamics.inverse import MeasuredScar, infer
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
+from dentscope.dynamics.told.onset import first_yield_speed
 from dentscope.models import LAWS
 
 OF = {m.name: m for m in MECHANISMS}
@@ -62,23 +62,68 @@ def test_below_the_critical_stokes_number_nothing_comes_back(stokes, touches):
     assert found.restitution == pytest.approx(max(1.0 - 8.0 / stokes, 0.0), abs=1e-6)
 
 
-def test_a_film_that_is_only_named_takes_the_stated_viscosity():
-    """Ten times it: immersed spheres stop at a Stokes number of ten (Joseph 2001, Gondret 2002)."""
-    assert film(1.0, drag=0.0)[0].restitution == pytest.approx(1.0 - 0.19231, abs=1e-4)
-
-
-def test_a_terminal_fall_is_answered():
-    """Of 0.2 m in oil of 0.1 Pa s: as fast as the flight's own equation has it."""
-    found, _ = struck(
-        target=GLASS, radius=3e-3, speed=0.0, impact={"drop_height_m": 0.2}, gravity_m_s2=9.81,
-        environment={"fluid": "oil", "viscosity_Pa_s": 0.1, "density_kg_m3": 935.0},
-        mechanisms={"air-drag": True},
-    )  # fmt: skip
-    from dentscope.core.drag import Fluid
-
+@pytest.mark.parametrize("stokes", [50.0, 152.0, 500.0])
+def test_a_liquid_that_is_only_named_is_all_around(stokes):
+    """exp(-35/St) of the dry one (Legendre and others 2005, of Gondret's and Joseph's spheres)."""
     mass = 7800.0 * 4.0 / 3.0 * math.pi * 3e-3**3
-    fall = flown(Striker(mass, 3e-3), Fluid(935.0, 0.1), normal=0.0, rise=-0.2)
-    assert found.tip_rebound_m_s == pytest.approx(-float(fall.normal), rel=1e-3)
+    found, _ = film(stokes * 6.0 * math.pi * 0.1 * 3e-3**2 / mass, drag=0.0)
+    assert found.restitution == pytest.approx(1.0 - 20.0 / stokes, abs=1e-6)
+    assert found.restitution == pytest.approx(math.exp(-35.0 / stokes), abs=0.11)
+
+
+@pytest.mark.parametrize(("eta", "arrives"), [(0.1, 0.51526), (3.0, 0.04424), (100.0, 1.3469e-3)])
+@pytest.mark.parametrize("cushioned", [False, True])
+def test_a_terminal_fall_is_answered(eta, arrives, cushioned):
+    """Of 0.2 m in oil: as m v' = W - D integrated by itself has it; a film slows what arrives."""
+    wet = {"squeeze-film": {"film_drag_Pa_s": 0.8}} if cushioned else {}
+    found, blow = struck(
+        target=GLASS, radius=3e-3, speed=0.0, impact={"drop_height_m": 0.2}, gravity_m_s2=9.81,
+        environment={"fluid": "oil", "viscosity_Pa_s": eta, "density_kg_m3": 935.0},
+        mechanisms={"air-drag": True} | wet,
+    )  # fmt: skip
+    left = max(arrives - 0.15385 * cushioned, 0.0)
+    assert found.rebound_speed_m_s == pytest.approx(left, rel=2e-3, abs=1e-9)
+    assert any("in place of 1.981 m/s" in line for line in blow.checks()) is (left > 0.0)
+
+
+def test_what_a_liquid_bears_does_not_fall():
+    light = {**STEEL, "density_kg_m3": 500.0}
+    one = setup(
+        ball=light, speed=0.0, impact={"drop_height_m": 0.2}, mechanisms={"air-drag": True},
+        environment={"fluid": "oil", "viscosity_Pa_s": 0.1, "density_kg_m3": 935.0},
+        gravity_m_s2=9.81,
+    )  # fmt: skip
+    with pytest.raises(InputError, match="does not fall"):
+        one.check_laws([LAWS["hertz"]])
+
+
+def test_a_ball_on_a_rods_end_gives_it_rho_c_A():
+    """m v' = -F, x' = v - F/(rho c A), F = (4/3) E' R^(1/2) x^(3/2), integrated by itself."""
+    found, blow = struck(impact={"support": "rod", "support_radius_m": 0.01})
+    assert found.restitution == pytest.approx(0.949587, abs=1e-6)
+    assert found.contact_time_s == pytest.approx(34.918e-6, rel=1e-4)
+    assert any("less than 0.0897 m" in line for line in blow.checks())
+
+
+@pytest.mark.parametrize(
+    ("thickness", "support", "said"),
+    [(7e-4, "plate", "43 of its thickness"), (3e-3, "plate", "bent by some"), (3e-3, "rigid", "")],
+)  # fmt: skip
+def test_a_plate_is_told_how_far_it_bends(thickness, support, said):
+    """m v/(8 sqrt(rho h D)) of 130 g from 0.6 m on 0.7 mm of glass: 30 mm."""
+    plate, drop = {**GLASS, "thickness_m": thickness}, {"drop_height_m": 0.6, "support": support}
+    _, blow = struck(target=plate, radius=0.016, speed=0.0, impact=drop, gravity_m_s2=9.81)
+    assert any("bent by" in line for line in blow.checks()) is bool(said)
+    assert any(said in line for line in blow.checks())
+
+
+def test_the_moment_under_a_force_is_that_of_a_plates_response_to_an_impulse():
+    """(1 + nu)/(8 pi) times the integral of F(t - s) cos(r^2/(4 c s))/s, as that of the code."""
+    T, c_over_r2 = 35e-6, 2.5e6
+    s = np.geomspace(1e-10, 0.5 * T, 400_001)
+    inner = np.where(s > 5e-4 / (4.0 * c_over_r2), np.cos(1.0 / (4.0 * c_over_r2 * s)), 0.0)
+    moment = np.trapezoid(np.cos(math.pi * s / T) * inner, np.log(s))
+    assert math.log(4.0 * c_over_r2 * T) - 1.83 == pytest.approx(moment, rel=0.01)
 
 
 @pytest.mark.parametrize(
@@ -109,12 +154,13 @@ def pair_of(rng):
     return one, two, 10.0 ** rng.uniform(-0.5, 1.3)
 
 
-def told_from(one, other, speed, law="fitted"):
+def told_from(one, other, speed, law="fitted", *, all=False):
     own = {k: v for k, v in one.items() if k != "radius"}
     mass = 7800.0 * 4.0 / 3.0 * math.pi * other["radius"] ** 3
     target = {k: v for k, v in other.items() if k != "radius"}
     target |= {"shape": "sphere", "radius_m": other["radius"], "mass_kg": mass}
-    return struck(target=target, ball=own, radius=one["radius"], law=law, speed=speed)[0]
+    found = struck(target=target, ball=own, radius=one["radius"], law=law, speed=speed)
+    return found if all else found[0]
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -125,6 +171,16 @@ def test_one_blow_of_two_spheres_is_the_same_from_either_side(seed):
         assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-6), name
     assert a.residual_sphere_m == pytest.approx(b.residual_flat_m, rel=1e-6, abs=1e-13)
     assert a.residual_flat_m == pytest.approx(b.residual_sphere_m, rel=1e-6, abs=1e-13)
+
+
+def test_what_is_told_of_two_spheres_is_the_same_from_either_side():
+    soft, hard = {"radius": 1e-3, "Sy_Pa": 3e8, **STEEL}, {"radius": 0.1, "Sy_Pa": 3e9, **STEEL}
+    one, two = (
+        [x for x in told_from(*both, 10.0, all=True)[1].checks() if "along the approach" not in x]
+        for both in ((soft, hard), (hard, soft))
+    )
+    assert one == two
+    assert any("flattening" in line for line in one)
 
 
 def test_a_small_soft_sphere_is_the_laws_whichever_strikes():
@@ -151,11 +207,14 @@ def test_a_strength_beyond_a_factor_of_ten_is_not_cut(length, radius, factor):
     size = {"size-effect": {"size_length_m": length}}
     given = {"radius": radius, "law": "fitted"}
     target, ball = ({**STEEL, "Sy_Pa": s} for s in (soft, hard))
-    found, _ = struck(target=target, ball=ball, mechanisms=size, **given)
+    found, blow = struck(target=target, ball=ball, mechanisms=size, **given)
     target, ball = ({**STEEL, "Sy_Pa": factor * s} for s in (soft, hard))
-    stated, _ = struck(target=target, ball=ball, **given)
+    stated, plain = struck(target=target, ball=ball, **given)
     assert found.restitution == pytest.approx(stated.restitution, rel=2e-3)
     assert found.residual_flat_m == pytest.approx(stated.residual_flat_m, rel=1e-2)
+    assert first_yield_speed(blow.setup.scene(LAWS["fitted"])) == pytest.approx(
+        first_yield_speed(plain.setup.scene(LAWS["fitted"])), rel=2e-2
+    )
 
 
 @pytest.mark.parametrize(("kelvin", "ends"), [(250.0, True), (900.0, False), (1760.0, True)])

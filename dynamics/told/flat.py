@@ -1,0 +1,120 @@
+"""What is said of a flat: a plate's thickness, how it bends, a struck rod, waves that run off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...core.rig import value_of
+from ..mechanisms.base import Surroundings
+from ..mechanisms.half_space_waves import HalfSpaceWaves
+from ..result import Impact
+from ..rules import RULES
+from ..scene import Scene
+from ..support import plate_support
+from .band import repeated
+from .effect import ATOM, effect
+from .onset import effective_mass
+
+if TYPE_CHECKING:
+    from ..files.setup import Setup
+
+# limit: deflection of a plate over its thickness up to which it bends alone [-]
+_SMALL = 0.5
+
+
+def flat_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    """Yield what is to be said of the flat of a blow."""
+    yield from _plate(setup, scene, found)
+    yield from bending(setup, scene, found)
+    yield from _struck_rod(setup, scene, found)
+    yield from _waves(setup, scene, found)
+
+
+def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    thickness = setup.file.target.thickness_m
+    if thickness is None:
+        return
+    h = thickness.value
+    dent = found.residual_flat_m
+    if found.peak_depth_m >= h:
+        yield (
+            f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the flat is thick, "
+            f"{h * 1e3:.3g} mm: it would be pierced, and no number here holds"
+        )
+    a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    if dent > ATOM:
+        # the standard's dents are wider than 0.24 of the ball, and 8 of their depths than a radius
+        enough = "thick" if h >= max(RULES.thick * dent, a) else "NOT thick"
+        yield (
+            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "
+            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
+            f"{a * 1e3:.2g} mm"
+        )
+    else:
+        if not a > 0.0:
+            return
+        yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
+
+
+def bending(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    """Yield how far a plate gives way, and the stress that bends it, beside its strength.
+
+    Under a force on an endless plate the moment at the radius r is (1 + nu) F/(8 pi) (ln(4 c T/r^2)
+    - 1.83), c^2 = D/(rho h), for a half-sine of force of the duration T at its peak (from the
+    plate's response to an impulse, Boussinesq); of a small contact r is Westergaard's, 0.325 h.
+    """
+    flat, h = scene.pair.flat, value_of(setup.file.target.thickness_m)
+    if not (scene.support.plate_mobility > 0.0 and h > 0.0) or setup.file.impact.support == "rod":
+        return
+    impulse = effective_mass(scene) * scene.approach.speed * (1.0 + found.restitution)
+    moved = plate_support(flat, thickness=h).plate_mobility * impulse / h
+    if moved > _SMALL:
+        yield (
+            f"the plate gives way by {moved:.2g} of its thickness: beyond {_SMALL:g} it stiffens "
+            "as a membrane (Timoshenko and Woinowsky-Krieger), which is not in this"
+        )
+    a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    r = math.hypot(math.sqrt(1.6) * a, h) - 0.675 * h
+    c = h * math.sqrt(flat.plane_strain_modulus / (12.0 * flat.density))
+    turns = math.log(8.0 * c * found.loading_time_s / r**2) - 1.83
+    stress = 6.0 / h**2 * (1.0 + flat.nu) * found.peak_force_N / (8.0 * math.pi) * turns
+    if stress > 0.0:
+        over = f", more than its strength, {flat.Sy / 1e6:.3g} MPa: it bends for good or breaks"
+        yield (
+            f"the plate's lower face is bent by some {stress / 1e6:.2g} MPa"
+            f"{over * (stress > flat.Sy)}"
+        )
+
+
+def _struck_rod(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    radius, flat = setup.file.impact.support_radius_m, scene.pair.flat
+    if setup.file.impact.support != "rod":
+        return
+    reach = 0.5 * math.sqrt(flat.E / flat.density) * found.contact_time_s
+    a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    yield (
+        f"the struck rod is without end: one of less than {reach:.3g} m throws waves back within "
+        f"the contact, whose radius is {a / radius:.2g} of the rod's"
+    )
+
+
+def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    """What waves into the flat would do: a plate of its thickness, else a half-space."""
+    flat, support = scene.pair.flat, setup.file.impact.support
+    asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
+    other = support not in ("rigid", "plate") or setup.second is not None
+    if asked or other or flat.rigid or math.isnan(flat.density):
+        return
+    # Zener's plate is the thin one; this one has its thickness
+    without = scene.with_(support=replace(scene.support, plate_mobility=0.0))
+    thick = Surroundings(thickness=value_of(setup.file.target.thickness_m))
+    waves = HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick)
+    told = effect(repeated(setup, waves), found)
+    if support == "plate":
+        yield f"with waves across its thickness too (mechanisms.half-space-waves): {told}"
+    else:
+        plate = thick.thickness > 0.0
+        yield f"{'hung freely as a wide plate' if plate else 'waves into a deep flat'}: {told}"
