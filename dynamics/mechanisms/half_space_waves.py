@@ -56,8 +56,8 @@ class HalfSpaceWaves(Mechanism):
         one = _unit_radiation(flat.nu) * math.sqrt(flat.density) / flat.E**1.5
         kappa = scene.force.radiation + scale * one
         found = scene.with_(force=replace(scene.force, radiation=kappa))
-        if not around.thickness > 0.0:
-            return found
+        if not around.thickness > 0.0 or math.isfinite(scene.support.mass):
+            return found  # a half-space, or what moves as a block
         bending = plate_support(flat, thickness=around.thickness).plate_mobility
         mobility = scene.support.plate_mobility
         mobility += scale * bending * _returned(scene, flat, around.thickness)

@@ -81,5 +81,6 @@ class SupportCompliance(Mechanism):
         k = values["support_stiffness_N_m"]
         damping = 2.0 * values["support_damping_ratio"] * math.sqrt(k * mass)
         return scene.with_(
-            support=Support(mass, k, damping, plate_mobility=scene.support.plate_mobility)
+            # what moves as a block is no endless plate
+            support=Support(mass, k, damping)
         )

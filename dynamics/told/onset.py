@@ -89,14 +89,12 @@ def as_strong(scene: Scene, depth: float = math.nan) -> Pair:
     if not scene.flow or not math.isfinite(scene.pair.Sy_min):
         return scene.pair
     table = strength_table(scene.law, scene.pair)
-    strength, log_depth = np.log(scene.strengths(table)), table.log_depth
+    strength, at = np.log(scene.strengths(table)), np.log(depth)
     if math.isnan(depth):
         # the depth of first yield goes as the square of the strength there
-        beyond = log_depth - 2.0 * strength - math.log(scene.pair.first_yield * scene.pair.R)
-        at = np.interp(0.0, np.maximum.accumulate(beyond), log_depth)
-    else:
-        at = math.log(depth)
-    return stronger(scene.pair, math.exp(float(np.interp(at, log_depth, strength))))
+        beyond = table.log_depth - 2.0 * strength - math.log(scene.pair.first_yield * scene.pair.R)
+        at = np.interp(0.0, np.maximum.accumulate(beyond), table.log_depth)
+    return stronger(scene.pair, math.exp(float(np.interp(at, table.log_depth, strength))))
 
 
 def largest_mean_pressure(scene: Scene, found: Impact) -> float:
