@@ -91,10 +91,6 @@ class DiagnosisRules:
         3, "explanations that are reported as indistinguishable at most [-]",
         "with more the set says too little",
     )  # fmt: skip
-    resembles: float = rule(
-        0.5, "share of what is outside from which one without a name is said to be like it [-]",
-        "more likely than not",
-    )  # fmt: skip
     nameless: float = rule(
         1.0 / 3.0, "part of what is outside that is known physics without a name [-]",
         "chosen: as much as each of a free law and a free departure",

@@ -31,10 +31,6 @@ class ImpactRules:
         41, "nodes of the table over ln(depth/R) [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    imprints: int = rule(
-        24, "imprints that are kept apart [-]",
-        "beyond it the two nearest become one",
-    )  # fmt: skip
     partial_slip: float = rule(
         0.77, "part of Mindlin's stiffness that a single spring has which stands for slip from the "
         "edge inwards [-]",
@@ -71,21 +67,9 @@ class ImpactRules:
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    largest_error: float = rule(
-        1.0, "largest error of a law, of a logarithm [-]",
-        "beyond it a law is off by a factor",
-    )  # fmt: skip
     held: tuple[float, ...] = rule(
         (1.0, 0.5, 0.25, 0.1),
         "parts of a standard deviation that are tried where a whole one leaves the range [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    thick: float = rule(
-        8.0, "thickness over the depth of a dent that counts as thick [-]",
-        "ISO 6506-1, 6.3",
-    )  # fmt: skip
-    pressure_points: int = rule(
-        60, "depths at which the mean pressure is looked at [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     visible: float = rule(
@@ -131,11 +115,6 @@ class ImpactRules:
     block_mass: float = rule(
         0.1, "lightest block that is taken for a half-space without a word [kg]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    critical_stokes: float = rule(
-        10.0, "Stokes number m v/(6 pi eta R^2) at which immersed spheres begin to rebound [-]",
-        "Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329; Gondret, Lance and "
-        "Petit, Phys. Fluids 14 (2002) 643",
     )  # fmt: skip
     damped: float = rule(
         1e3, "m Y^2 F/d of a tip on a thin plate from which it stays there [-]",

@@ -46,8 +46,8 @@ N_HEAD = 5
 # took off, the law's depth at its peak, the radius of contact there, the share q.
 START, END, FIRST, LAST, DEEPEST, TAKEN, PEAK, RADIUS, GIVE = range(9)
 N_IMPRINT = 9
-MOST = RULES.imprints
-"""Imprints that are kept apart; beyond it the two nearest become one."""
+# limit: imprints that are kept apart [-]; beyond it the two nearest become one
+MOST = 24
 N_SURFACE = N_HEAD + MOST * N_IMPRINT
 
 # limit: most samples of a scan across a dent [-]: 3 m at the usual step; a law that is far out of

@@ -26,11 +26,13 @@ from .factors import Fronts, postorder
 from .krylov import gmres
 from .rules import RULES
 
+# limit: most steps of GMRES with old factors [-]
+_KRYLOV = 12
+
 Solve = Callable[[Array], Array]
 
 _FORCING = RULES.forcing
 _RESIDUAL = RULES.krylov_residual
-_KRYLOV = RULES.krylov_steps
 _PATIENCE = RULES.refactor_after
 _REACH = RULES.pattern_reach
 

@@ -20,6 +20,12 @@ from .elements import State
 from .linear import LinearSystem
 from .rules import RULES
 
+# limit: secant steps of a line search [-]
+_SECANTS = 3
+
+# limit: halvings of a correction [-]
+_BACKTRACKS = 5
+
 # limit: most iterations of a step [-]
 _ITERATIONS = 18
 
@@ -180,7 +186,7 @@ class Solver:
     ) -> tuple[Array, Evaluation | None, float]:
         alpha = 1.0
         new = self._evaluate(u + direction, state)
-        for _ in range(RULES.backtracks):
+        for _ in range(_BACKTRACKS):
             if new is not None:
                 break
             alpha *= 0.5
@@ -190,7 +196,7 @@ class Solver:
         s0 = float(direction @ now.residual)
         s = float(direction @ new.residual)
         low, s_low, high, s_high = 0.0, s0, alpha, s
-        for _ in range(RULES.secants):
+        for _ in range(_SECANTS):
             if abs(s_high) < 0.7 * abs(s0) or s_low * s_high > 0.0:
                 break
             alpha = high - s_high * (high - low) / (s_high - s_low)

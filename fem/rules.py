@@ -32,10 +32,6 @@ class FemRules:
         0.2, "relative residual that a direction may leave [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    krylov_steps: int = rule(
-        12, "most steps of GMRES with old factors [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     refactor_after: int = rule(
         7, "steps of GMRES after which the next matrix is factorised anew [-]",
         "chosen; no measurement is kept",
@@ -108,14 +104,6 @@ class FemRules:
     )  # fmt: skip
     hopeless_after: int = rule(
         8, "iterations after which a residual that has not halved will not converge [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    backtracks: int = rule(
-        5, "halvings of a correction [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    secants: int = rule(
-        3, "secant steps of a line search [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     step_cut: float = rule(

@@ -14,7 +14,7 @@ from .prediction import Prediction, given_back
 from .rules import RULES
 from .table import ResidualTable, Table
 
-SIGMAS = RULES.coverage
+SIGMAS = (0.724, 0.950)
 """Shares within one and two standard deviations of Student's t with seven degrees of freedom.
 
 The errors have longer ends than a normal distribution, of which a deviation has to speak too.

@@ -11,10 +11,6 @@ from ..core.rules import rule
 class FittingRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    coverage: tuple[float, ...] = rule(
-        (0.724, 0.950), "shares within one and two stated standard deviations [-]",
-        "Student's t with seven degrees of freedom: the errors have longer ends than a normal",
-    )  # fmt: skip
     element_noise: float = rule(
         2e-3, "relative error of the finite elements beside a law's own [-]",
         "chosen; no measurement is kept",

@@ -13,9 +13,14 @@ from dataclasses import dataclass
 from ..core.material import Pair
 from .base import CombinedLaw, ContactLaw
 from .hardening import HardeningLaw
-from .rules import RULES
 from .table import TableLaw
 from .turned import TurnedLaw
+
+# limit: ratio of strengths above which the flat alone is said to yield [-]
+_INDENTATION_ABOVE = 1.7
+
+# limit: ratio of strengths below which the sphere alone is said to yield [-]
+_FLATTENING_BELOW = 0.6
 
 _ELASTIC_DEPTH = 1.9
 """Depth up to which a contact is elastic [critical depths] (Jackson and Green 2005, Eq. 9)."""
@@ -55,9 +60,9 @@ def demand(pair: Pair, depth: float) -> Demand:
     ratio = pair.Sy_ratio
     if w <= 1.0:
         regime = "elastic"
-    elif ratio < RULES.flattening_below:
+    elif ratio < _FLATTENING_BELOW:
         regime = "flattening"
-    elif ratio > RULES.indentation_above:
+    elif ratio > _INDENTATION_ABOVE:
         regime = "indentation"
     else:
         regime = "both bodies"

@@ -41,10 +41,11 @@ from .kernel import (
     reader,
     residual_kernel,
 )
-from .rules import RULES
 from .uncertainty import Calibration, Uncertainty
 
-_FINITE = RULES.finite_strain_depth
+# limit: depth at which the law says how far finite elastic strain takes it from Hertz [R]
+_FINITE = 0.01
+
 
 _pair_numbers = reader(PairNumbers, N_COMMON)  # behind the common numbers
 

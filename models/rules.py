@@ -11,24 +11,12 @@ from ..core.rules import rule
 class ModelRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    flattening_below: float = rule(
-        0.6, "ratio of strengths below which the sphere alone is said to yield [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    indentation_above: float = rule(
-        1.7, "ratio of strengths above which the flat alone is said to yield [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     sharpest: float = rule(
         20.0, "steepest taking over between two regimes [-]",
         "over a tenth of the depth, as wide as the data can tell",
     )  # fmt: skip
     shift_bound: float = rule(
         4.0, "bound of the shift of a number [units]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    finite_strain_depth: float = rule(
-        0.01, "depth at which the law says how far finite elastic strain takes it from Hertz [R]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     mean_span: float = rule(

@@ -25,6 +25,15 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
+# limit: plastic strain at which a curve's rise is compared [-]; what a dent of a/R = 0.5 strains
+_RISE_STRAIN = 0.1
+
+# limit: ratio of strengths beyond which the stronger body hardly matters [-]
+_UNEVEN_STRENGTHS = 2.5
+
+# limit: largest departure of a law that may be used [-]: of a dent whose strength is off by a tenth
+USABLE = 0.10
+
 # limit: distance from which the nearest pair is called far [-]
 _FAR = 0.5
 
@@ -34,8 +43,6 @@ CURVE_POINTS = 120
 # limit: times too little or too much that are not told in times [-]
 _NO_FACTOR = 100.0
 
-USABLE = RULES.usable
-"""Largest departure of a law that may be used: that of a dent whose strength is off by a tenth."""
 
 ELASTIC = "Hertz's force, finite strain added"
 """The judge while nothing yields: within 1 % of finite elements at Delta/R = 0.04."""
@@ -174,7 +181,7 @@ def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
 
 def _groups(pair: Pair) -> Array:
     """What a contact depends on, each about one wide over the published pairs."""
-    ratio = min(max(pair.Sy_ratio, 1.0 / RULES.uneven_strengths), RULES.uneven_strengths)
+    ratio = min(max(pair.Sy_ratio, 1.0 / _UNEVEN_STRENGTHS), _UNEVEN_STRENGTHS)
     groups = [
         math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
         (pair.elastic_share - 0.5) / 0.22, (_nu(pair.weaker) - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
@@ -188,7 +195,7 @@ def _nu(body: Material) -> float:
 
 def _rise(body: Material) -> float:
     curve = body.flow.curve if body.flow else None
-    return math.log(curve(RULES.rise_strain) / curve.strength) if curve else 0.0
+    return math.log(curve(_RISE_STRAIN) / curve.strength) if curve else 0.0
 
 
 def _reference(record: CaseRecord, distance: float, last: float) -> Reference:

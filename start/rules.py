@@ -15,21 +15,9 @@ class StartRules:
         0.9, "part of the largest speed from which conditions are kept out [-]",
         "chosen: they judge what the rest inferred",
     )  # fmt: skip
-    usable: float = rule(
-        0.10, "largest departure of a law that may be used [-]",
-        "that of a dent whose strength is off by a tenth",
-    )  # fmt: skip
     least_dent: float = rule(
         0.1, "part of the depth below which a dent says nothing about a law [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    uneven_strengths: float = rule(
-        2.5, "ratio of strengths beyond which the stronger body hardly matters [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    rise_strain: float = rule(
-        0.1, "plastic strain at which a curve's rise is compared [-]",
-        "what a dent of a/R = 0.5 strains",
     )  # fmt: skip
     work_points: int = rule(
         400, "points of an integral of the work [-]",

@@ -23,6 +23,10 @@ from ..unknowns.wrong_number import is_wrong
 from .families import Family, family_of
 from .odds import BASELINE, OUTSIDE, SURE, Odds
 
+# limit: share of what is outside from which one without a name is said to be like it [-]; more
+# likely than not
+_RESEMBLES = 0.5
+
 WRONG_INPUT = "wrong-input"
 
 
@@ -82,7 +86,7 @@ def _said(ranking: Ranking, odds: Odds, least: float) -> Choice:
         if lead == BASELINE:
             return Choice("adequate", (), ())
         if lead == OUTSIDE:
-            alike = {t: share for t, share in odds.alike.items() if share > RULES.resembles}
+            alike = {t: share for t, share in odds.alike.items() if share > _RESEMBLES}
             told = tuple(
                 f"it behaves as if {title}: {100.0 * share:.0f} % of what is not in the library"
                 for title, share in alike.items()

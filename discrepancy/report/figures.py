@@ -34,8 +34,8 @@ _SERIES = {
 """By the page's colours, in the order of `_simulated`."""
 MARKERS = tuple(SHAPES)[1:]
 """A striker's marker, in the order of the strikers."""
+# limit: of a figure [pt]: its size, and where its panels end
 _WIDTH, _HEIGHT, _RIGHT, _TOP, _SPLIT, _BOTTOM = 331.0, 324.0, 325.0, 6.0, (170.0, 180.0), 294.0
-"""Of a figure [pt]: its size, and where its panels end."""
 
 
 def comparison(

@@ -29,6 +29,7 @@ SHAPES = {
     "*": "m0-3.4l.8 2.3h2.4l-1.9 1.5l.7 2.4l-2-1.4l-2 1.4l.7-2.4l-1.9-1.5h2.4z",
 }
 """Outlines of markers about their place: a point, then those of strikers, in their order."""
+# limit: of text: its size, a letter's width, from line to line [pt]
 _FONT, _LETTER, _LINE = 9.0, 5.2, 11.0
 
 

@@ -10,10 +10,13 @@ from typing import ClassVar
 import numpy as np
 
 from ...core.arrays import Array
-from ..rules import RULES
 from ..scene import Scene
 from .arithmetic import effective_mass, slower
 from .base import Mechanism, Parameter, Situation, Surroundings, Values
+
+_CRITICAL_STOKES = 10.0
+"""m v/(6 pi eta R^2) at which immersed spheres begin to rebound [-] (Joseph, Zenit, Hunt and
+Rosenwinkel, J. Fluid Mech. 433 (2001) 329; Gondret, Lance, Petit, Phys. Fluids 14 (2002) 643)."""
 
 
 class SqueezeFilm(Mechanism):
@@ -64,7 +67,7 @@ class SqueezeFilm(Mechanism):
         eta = around.viscosity
         if sized or not eta > 0.0:
             return {}
-        return {"film_drag_Pa_s": RULES.critical_stokes * eta, "film_exit_share": 1.0}
+        return {"film_drag_Pa_s": _CRITICAL_STOKES * eta, "film_exit_share": 1.0}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um.

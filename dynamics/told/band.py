@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 
 from ...core.rig import LEAST_KNOWN
 
+# limit: largest error of a law, of a logarithm [-]; beyond it a law is off by a factor
+_LARGEST_ERROR = 1.0
+
 # limit: most steps of a blow that is made for a band alone [-]; usual blows take some 200, a
 # vibrating rod 2000; tools/benchmarks/fuzz_keys.py ended in no 30 s with five times that
 _BAND_STEPS = 4000
@@ -256,7 +259,7 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
         return _Sizes(RULES.hertz_error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     known = error_of(law, pair, np.array([found.peak_depth_m]))
     force, radius, dent, back = (
-        min(float(np.nan_to_num(x[0], nan=RULES.largest_error)), RULES.largest_error)
+        min(float(np.nan_to_num(x[0], nan=_LARGEST_ERROR)), _LARGEST_ERROR)
         for x in (known.force, known.radius, known.dent, known.given_back)
     )
     sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL

@@ -11,7 +11,6 @@ from ...core.rig import value_of
 from ..mechanisms.base import Surroundings
 from ..mechanisms.half_space_waves import HalfSpaceWaves
 from ..result import Impact
-from ..rules import RULES
 from ..scene import Scene
 from ..support import plate_support
 from .band import repeated
@@ -20,6 +19,9 @@ from .onset import effective_mass
 
 if TYPE_CHECKING:
     from ..files.setup import Setup
+
+_THICK = 8.0
+"""Thickness over the depth of a dent that counts as thick [-] (ISO 6506-1, 6.3)."""
 
 # limit: deflection of a plate over its thickness up to which it bends alone [-]
 _SMALL = 0.5
@@ -47,10 +49,10 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if dent > ATOM:
         # the standard's dents are wider than 0.24 of the ball, and 8 of their depths than a radius
-        enough = "thick" if h >= max(RULES.thick * dent, a) else "NOT thick"
+        enough = "thick" if h >= max(_THICK * dent, a) else "NOT thick"
         yield (
-            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "
-            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
+            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {_THICK:g} times "
+            f"its depth is {_THICK * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
             f"{a * 1e3:.2g} mm"
         )
     else:

@@ -13,9 +13,11 @@ from ...core.material import Pair
 from ...models.base import DomainWarning
 from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
-from ..rules import RULES
 from ..scene import Scene
 from ..strength import strength_table, stronger
+
+# limit: depths at which the mean pressure is looked at [-]
+_PRESSURE_POINTS = 60
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,7 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     peak = found.peak_depth_m
     if scene.striker.tip_flat_radius > 0.0 or not 0.0 < peak < math.inf:
         return math.nan
-    depth = np.geomspace(1e-3 * peak, peak, RULES.pressure_points)
+    depth = np.geomspace(1e-3 * peak, peak, _PRESSURE_POINTS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         stated = scene.law.hardness(scene.pair, depth)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-import h5py
 import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.campaigns import standard_case
 from dentscope.campaigns.case import _rounded
-from dentscope.campaigns.case_file import PROFILES, _put_profiles
 from dentscope.campaigns.cost import Forecast
 from dentscope.campaigns.quality import largest_step
 from dentscope.cli.campaign_progress import remarks
@@ -41,21 +39,6 @@ def test_a_step_is_seen_from_eight_depths_on_by_what_a_cubic_over_seven_leaves()
     assert largest_step(depth, stepped) == pytest.approx(0.01, rel=0.02)
     assert np.isnan(largest_step(depth[:7], stepped[:7]))
     assert largest_step(depth[:8], depth[:8]) == pytest.approx(0.0, abs=1e-9)
-
-
-def solution(radius):
-    """What is needed of a solve to write its profiles: one, of nodes from 0 to 1."""
-    r = np.linspace(0.0, 1.0, 101)
-    loading = SimpleNamespace(radius=np.array([radius]))
-    names = dict.fromkeys(PROFILES, r)
-    return SimpleNamespace(loading=loading, profiles=[SimpleNamespace(**names)])
-
-
-def test_profiles_are_kept_to_two_contact_radii(tmp_path) -> None:
-    with h5py.File(tmp_path / "a.h5", "w") as file:
-        _put_profiles(file, solution(0.2))
-        name = next(n for n, about in PROFILES.items() if about.axes[-1] == "node")
-        assert file[name].shape == (1, 41)
 
 
 def cases(n):
