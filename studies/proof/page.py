@@ -69,20 +69,14 @@ _DETAILS = """# Proof, in detail
 Of the last full run of the [proof](proof.md), unless said otherwise.
 """
 
-_OTHERS = """## What other methods would make of a set
+_OTHERS = """## Other methods
 
-* **LISDD** (Wang, arXiv:2606.23215) fits the known physics where residuals are quiet and picks a
-  missing term from a library where they are not. Our effects mostly act in all conditions, 6 to 20
-  of these are few to part, and a formula is no name.
-* **mist** (Anau Montel, Alvey, Weniger, Phys. Rev. D 111 (2025) 083013) tests distortions of a
-  simulator, each by a learnt likelihood ratio. Ours are known: Bayes factors, a rule above, weigh
-  them without a network for every rig.
-* **Posterior predictive p values** (Meng, Ann. Stat. 22 (1994) 1142) use the data twice, and say
-  whether a model fits, not what it lacks.
-* **emdcmp** (René, Longtin, Nature Communications 2025, arXiv:2408.13414) rejects a fitted model
-  where another is better beyond what replications vary: an order, without a place for the unknown.
-
-None was run here; whoever has one can [try it](challenge.md) on concealed sets."""
+Not run here: LISDD (Wang, arXiv:2606.23215) finds a missing term where residuals are not quiet,
+ours act in all conditions and a formula is no name; mist (Anau Montel and others, Phys. Rev. D
+111 (2025) 083013) learns likelihood ratios of distortions, ours are known; posterior predictive p
+values (Meng, Ann. Stat. 22 (1994) 1142) and emdcmp (René, Longtin, Nature Communications 2025)
+say whether a model fits, not what it lacks. Whoever has one can [try it](challenge.md) on
+concealed sets."""
 
 
 def summary(
