@@ -72,7 +72,7 @@ def case(
     _show(console, solution, uncertainty)
     told = found.measured
     console.print("\n".join(told.lines(read_pair(file)[0].ball_mass)))
-    tell_aside(file)
+    tell_unused(file)
     if found.remark:
         console.print(found.remark)
     for path in (
@@ -91,20 +91,20 @@ def case(
     return 0
 
 
-def tell_aside(file: Path) -> None:
+def tell_unused(file: Path) -> None:
     """Say what the file states and a solve has no use for."""
-    from ..core.inputs.left_aside import left_aside
     from ..core.inputs.toml_input import read_toml
+    from ..core.inputs.unused_keys import unused_keys
 
     content = read_toml(file)
     if "speed_m_s" in content["load"] and not any("rate" in content[k] for k in ("sphere", "flat")):
         say("load.speed_m_s does nothing here: neither body has a rate")
-    aside = [
-        one for one in left_aside(content, ())
+    unused = [
+        one for one in unused_keys(content, ())
         if one.partition(" = ")[0].endswith((".std", "flat.density_kg_m3"))
     ]  # fmt: skip
-    if aside:
-        say(f"not in this solve: {', '.join(aside)}; `dentscope impact` takes them")
+    if unused:
+        say(f"not in this solve: {', '.join(unused)}; `dentscope impact` takes them")
 
 
 def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:

@@ -101,8 +101,8 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
             say(row.without(name))
     if not (ball.pair.perfectly_plastic or follows_flow(chosen)):
         say(f"{chosen.name} takes the first strength of each metal, not its flow curve")
-    if ball.aside:
-        say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
+    if ball.unused:
+        say(f"not in these parameters: {', '.join(ball.unused)}; `dentscope impact` takes them")
     two = ball.second is not None
     cells = table(rows, law=chosen.name, contact="two spheres" if two else "ball on flat")
     cells += table(between, law=chosen.name, contact="two balls")

@@ -101,8 +101,8 @@ def compare(
     from ..start.case_file import read_pair
 
     content, pair = read_pair(file)
-    from ..core.inputs.left_aside import left_aside
     from ..core.inputs.toml_input import read_toml
+    from ..core.inputs.unused_keys import unused_keys
     from ..models import LAWS
     from ..start.comparison import USED, LawRow, compared
 
@@ -115,9 +115,9 @@ def compare(
     console = new_console()
     console.print(found.finding)
     show_table(console, *found.table())
-    aside = left_aside(read_toml(file), USED)
-    if aside:
-        say(f"not in these laws: {', '.join(aside)}; `dentscope case` takes them")
+    unused = unused_keys(read_toml(file), USED)
+    if unused:
+        say(f"not in these laws: {', '.join(unused)}; `dentscope case` takes them")
     console.print(f"written: {table_file}\nwritten: {picture}", soft_wrap=True)
 
 

@@ -199,9 +199,9 @@ def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
     """Return a figure of some size [inch] and its axes (rows, columns)."""
-    from .shown import ShownFigure
+    from .notebook_figure import NotebookFigure
 
-    made = ShownFigure(figsize=size, layout="constrained")
+    made = NotebookFigure(figsize=size, layout="constrained")
     return made, made.subplots(rows, columns, squeeze=False)
 
 

@@ -29,11 +29,11 @@ from ..core.rig import BodyTable, Quantity, StrikerTable
 from . import noise, second_sphere
 from .columns import MEASURED
 from .noise import Noise
+from .notebook import picture_of, table_of
 from .rules import RULES
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
 from .setup_file import SetFile, flowing, setup_text, without_marks
-from .shown import picture_of, table_of
 from .trials import Trials, read_trials, trials_text
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core.errors import InputError
-from ..core.inputs.left_aside import left_aside
 from ..core.inputs.toml_input import read_toml
+from ..core.inputs.unused_keys import unused_keys
 from ..core.material import Pair
 from ..core.rig import value_of
 from ..dynamics.files.scenes import curves_in
@@ -52,7 +52,7 @@ class ExportedBall(NamedTuple):
     friction: float  # [-]
     speeds: tuple[float, ...]  # [m/s]; empty where the file says none
     law: str  # of ours that knows these metals
-    aside: list[str]  # what the file says beyond this
+    unused: list[str]  # what the file says beyond this
     second: SecondSphere | None = None  # in place of the flat; pair and mass are those of both
 
     def by(self, law: ContactLaw) -> ContactLaw:
@@ -113,7 +113,7 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
         used = used | {"target.radius_m", "target.mass_kg", "target.density_kg_m3"}
     return ExportedBall(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
-        left_aside(content, used) + _tip(setup, name), setup.second,
+        unused_keys(content, used) + _tip(setup, name), setup.second,
     )  # fmt: skip
 
 
@@ -130,4 +130,4 @@ def _of_case(content: Mapping[str, Any], file: Path) -> ExportedBall:
     found, pair = read_pair(file)
     law = "fitted" if pair.perfectly_plastic else FOLLOWING
     friction = value_of(found.friction.coefficient, 0.0)
-    return ExportedBall(pair, found.ball_mass, friction, (), law, left_aside(content, _OF_CASE))
+    return ExportedBall(pair, found.ball_mass, friction, (), law, unused_keys(content, _OF_CASE))

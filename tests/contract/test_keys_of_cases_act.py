@@ -11,7 +11,7 @@ from dataclasses import asdict
 import pytest
 import tomlkit
 from dentscope.cli import run
-from dentscope.cli.case import tell_aside
+from dentscope.cli.case import tell_unused
 from dentscope.cli.shared.keys import keys_of
 from dentscope.start.case_file import read_case, read_pair
 
@@ -101,7 +101,7 @@ def test_a_key_of_a_case_acts(key, tmp_path, capsys):
     told = []
     for content in (before, after):
         *solved, file = of_a_case(content, tmp_path)
-        tell_aside(file)
+        tell_unused(file)
         told.append((solved, capsys.readouterr().out))
     assert told[0] != told[1]
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from dentscope.campaigns import read_curves
 from dentscope.cli import run
-from dentscope.cli.case import tell_aside
+from dentscope.cli.case import tell_unused
 from dentscope.core import InputError
 from dentscope.core.inputs.templates import template
 from dentscope.models import law_named
@@ -251,11 +251,11 @@ def test_a_speed_without_a_rate_is_told(tmp_path, capsys):
     bodies = "[sphere]\nE_Pa = 2e11\nnu = 0.3\n[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 3e8\n"
     load = "[load]\nmax_delta_over_R = 0.01\nspeed_m_s = 1.0\n"
     file.write_text(f"radius_m = 0.01\n{bodies}{load}")
-    tell_aside(file)
+    tell_unused(file)
     assert "load.speed_m_s does nothing here: neither body has a rate" in capsys.readouterr().out
     rate = '[flat.rate]\nlaw = "cowper-symonds"\nD_1_s = 40.0\nq = 5.0\n'
     file.write_text(f"radius_m = 0.01\n{bodies}{rate}{load}")
-    tell_aside(file)
+    tell_unused(file)
     assert capsys.readouterr().out == ""
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from .errors import InputError
 
 
-class ShownFigure(Figure):  # type: ignore[misc]
+class NotebookFigure(Figure):  # type: ignore[misc]
     """A matplotlib figure that pyplot knows nothing of until it is shown."""
 
     def _repr_png_(self) -> bytes:

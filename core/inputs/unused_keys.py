@@ -8,7 +8,7 @@ from typing import Any
 _FOR_PEOPLE = frozenset({"name", "description", "source", "licence", "format", "material"})
 
 
-def left_aside(content: Mapping[str, Any], used: Collection[str]) -> list[str]:
+def unused_keys(content: Mapping[str, Any], used: Collection[str]) -> list[str]:
     """Return `key = value` for each key of a file that is none of `used`.
 
     Parameters
@@ -21,7 +21,7 @@ def left_aside(content: Mapping[str, Any], used: Collection[str]) -> list[str]:
 
     Examples
     --------
-    >>> left_aside({"flat": {"E_Pa": {"value": 2e11, "std": 4e9}, "nu": 0.3}}, {"flat.E_Pa"})
+    >>> unused_keys({"flat": {"E_Pa": {"value": 2e11, "std": 4e9}, "nu": 0.3}}, {"flat.E_Pa"})
     ['flat.E_Pa.std = 4e+09', 'flat.nu = 0.3']
     """
     return [
