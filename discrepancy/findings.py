@@ -16,7 +16,8 @@ from ..core.tables import text_table
 from .choice.decide import Choice
 from .comparison.problem import Problem
 from .correction import Correction
-from .experiments.next_experiment import Proposal
+from .experiments.proposal import Proposal
+from .experiments.session import Session
 from .inference.fit import Fit
 from .locate import Located
 from .rank import Ranking
@@ -25,6 +26,14 @@ from .unknowns.wrong_number import WrongNumber, is_wrong
 
 # limit: explanations that are shown [-]: a screen
 _SHOWN = 12
+
+
+class After(NamedTuple):
+    """What was known after a session: its number, trials so far, explanation to probability."""
+
+    batch: float
+    trials: int
+    probabilities: dict[str, float]
 
 
 class WrongInput(NamedTuple):
@@ -90,6 +99,10 @@ class Verdict:
         How much of the baseline's misfit the data sheet, the law and the metal took.
     stated
         (m,) predictions of the cells with every input as stated.
+    proposals, session
+        What could be done next, one by one, and in one session together.
+    history
+        Probabilities after each session, where the set has had several.
     ranking
         All fits, and the problem that they were fitted to.
     best
@@ -118,6 +131,8 @@ class Verdict:
     stated: Array
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
+    session: Session
+    history: tuple[After, ...]
     notes: tuple[str, ...]
     ranking: Ranking
     best: Fit
@@ -227,6 +242,7 @@ class Verdict:
                 for c in self.corrections
             ],
             "next_experiment": self._next(),
+            "history": [one._asdict() for one in self.history],
             "notes": [*self.reasons, *self.notes],
         }  # fmt: skip
 
@@ -235,7 +251,14 @@ class Verdict:
         if not self.proposals:
             return {"change": "", "expected_discrimination": 0.0, "others": []}
         first, *others = (_proposed(p) for p in self.proposals)
-        return {**first, "others": others}
+        s = self.session
+        session = {
+            "go_on": s.goes_on, "information_nats": s.information, "entropy_nats": s.entropy,
+            "minutes": s.minutes, "steps": [_proposed(p) for p in s.steps],
+            "outcomes": [one._asdict() for one in s.outcomes],
+            "elsewhere": [_proposed(p) for p in s.elsewhere],
+        }  # fmt: skip
+        return {**first, "others": others, "session": session}
 
 
 def _proposed(p: Proposal) -> dict[str, Any]:
@@ -243,6 +266,7 @@ def _proposed(p: Proposal) -> dict[str, Any]:
         "change": p.change, "expected_discrimination": p.expected_discrimination,
         "information_nats": p.information, "kind": p.kind,
         "interval": None if math.isnan(p.interval) else p.interval, "trial": dict(p.trial),
+        "minutes": None if math.isnan(p.minutes) else p.minutes,
     }  # fmt: skip
 
 

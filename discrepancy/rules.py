@@ -261,9 +261,32 @@ class DiagnosisRules:
         1.0, "standard deviations by which rivals differ for one trial to tell much [-]",
         "half a nat",
     )  # fmt: skip
-    build_worth: float = rule(
-        2.0, "gain of what is to be built over that of what is there [-]",
-        "a week against an hour",
+    session: float = rule(
+        120.0, "length of a session where none is stated [min]",
+        "a morning at the rig",
+    )  # fmt: skip
+    worth: float = rule(
+        0.05, "gain from which a session is worth it [nat]",
+        "a hundredth of what two even explanations share, seven times over",
+    )  # fmt: skip
+    doubt: float = rule(
+        0.1, "probability that is shared evenly by those told apart, as a session is chosen [-]",
+        "of 120 sets that nothing was chosen on 0.86 was said and 0.78 true",
+    )  # fmt: skip
+    worth_more: float = rule(
+        0.01, "gain from which one more thing is done in a session [nat]",
+        "a fifth of what makes a session worth it",
+    )  # fmt: skip
+    minutes: tuple[tuple[str, float], ...] = rule(
+        (("strike", 5.0), ("press", 5.0), ("change", 10.0), ("hardness", 30.0), ("weigh", 10.0),
+         ("calliper", 10.0), ("instrument", 60.0), ("build", 600.0)),
+        "how long each takes where it is not stated [min]",
+        "chosen; `[rig.minutes]` of set.toml states them",
+    )  # fmt: skip
+    settled: tuple[tuple[str, float], ...] = rule(
+        (("hardness", 0.1), ("weigh", 0.001), ("calliper", 0.005)),
+        "relative error of a number of the sheet that is measured again [-]",
+        "hardness over strength (core's tabor_spread); a balance; 0.02 mm of 5 mm",
     )  # fmt: skip
     dent_law_error: float = rule(
         0.02, "relative error of a dent's diameter where the law's error has none [-]",

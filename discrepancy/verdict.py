@@ -7,6 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -39,7 +40,7 @@ from .estimates import (
     surprises_of,
 )
 from .experiments.next_experiment import propose
-from .findings import Verdict
+from .findings import After, Verdict
 from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
@@ -88,6 +89,7 @@ def diagnose(
     cautious: bool = False,
     assume: Sequence[str] = (),
     mechanisms: Sequence[Mechanism] = (),
+    history: bool = True,
     progress: Progress = lambda _: None,
 ) -> Verdict:
     """Say what physics is missing in the simulation of a recording set.
@@ -98,6 +100,8 @@ def diagnose(
         From `recordings.read`.
     seed, confirm, law, cautious, assume, mechanisms
         As `dentscope.diagnose` takes and explains them.
+    history
+        Whether what was known before each later session of the set is worked out too.
     progress
         Called with a line before each step.
 
@@ -121,7 +125,22 @@ def diagnose(
         leading = [found.ranking.base, *decided.choice.members]
         sampled = confirm_evidence(found.simulator, leading, rng, progress)
         decided = _decided(found, sampled, cautious)
-    return _told(asked, found, decided)
+    verdict = _told(asked, found, decided)
+    if not history or not np.ptp(recordings.trials.sessions):
+        return verdict
+
+    def known(session: float) -> After:
+        progress(f"what was known after session {session:g}")
+        part = recordings.take(recordings.trials.sessions <= session)
+        earlier = _explained(
+            asked, Simulator(problem_of(part, law=chosen, assume=assume)), nulls=RULES.nulls
+        )
+        odds = _decided(earlier, {}, cautious).odds
+        return After(session, len(part.trials), dict(odds.probability))
+
+    *before, last = np.unique(recordings.trials.sessions).tolist()
+    now = After(last, len(recordings.trials), verdict.probabilities)
+    return replace(verdict, history=(*map(known, before), now))
 
 
 def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> _Decided:
@@ -150,7 +169,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     asked.progress("predicting conditions that were left out")
     left_out = {f.name: held_out(problem, f) for f in ranking.fits}
     asked.progress("looking for the next experiment")
-    proposals = propose(simulator, ranking, odds, asked.rng)
+    proposals, session = propose(simulator, ranking, odds, asked.rng)
     best = choice.members[0] if choice.members else base
     stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
     misfit = misfit_of(problem, base, stated)
@@ -168,7 +187,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
         improvement=improvement_of(left_out[base.name], left_out[best.name]),
         misfit=misfit, stated=stated,
         corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
-        proposals=tuple(proposals[: _PROPOSED]),
+        proposals=tuple(proposals[: _PROPOSED]), session=session, history=(),
         notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
         titles={m.name: m.title for m in (*MECHANISMS, *asked.own, *problem.wrong_numbers)},
     )  # fmt: skip

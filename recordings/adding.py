@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ..core.errors import InputErrors
 from ..core.inputs.csv_table import Problems, TextTable, read_text_table, shown
 from ..core.output import csv_text, locked, write_files
+from .bench import refuse_beyond
 from .columns import TRIAL_COLUMNS, VARIED
 from .recording_set import RecordingSet, files_of, read, read_as
 from .trials import read_trials
@@ -22,7 +24,8 @@ def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]
         Of the set.
     rows
         Table with columns of trials.csv; those that the set has not had yet are added to it. Where
-        the set has an `order` and the table has none, the rows follow in theirs.
+        the set has an `order` and the table has none, the rows follow in theirs. They are a
+        session of their own, the next `batch`, unless they say of which they are.
 
     Returns
     -------
@@ -46,11 +49,13 @@ def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]
                 if name in before.trials.trial:
                     problems.add(f"{shown(name)} is in the set already", row=row, column="trial",
                                  allowed="a name of its own")  # fmt: skip
+            if not problems.found:
+                refuse_beyond(replace(before, trials=new), table.rows, problems)
         if problems.found or new is None or table is None:
             raise InputErrors(tuple(problems.found))
         old = read_text_table(folder / "trials.csv", TRIAL_COLUMNS, Problems(""), free=VARIED)
         assert old is not None
-        text = _joined(old, table)
+        text = _joined(old, table, session=float(before.trials.sessions.max()) + 1.0)
         setup = (folder / "set.toml").read_text(encoding="utf-8")
         after = {**files_of(before), "set.toml": setup, "trials.csv": text}
         read_as(folder, after, unfinished=False)
@@ -58,9 +63,9 @@ def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]
     return read(folder), new.trial
 
 
-def _joined(old: TextTable, new: TextTable) -> str:
-    columns = [*old.columns, *(name for name in new.columns if name not in old.columns)]
-    cells: dict[str, Sequence[str]] = dict(new.cells)
+def _joined(old: TextTable, new: TextTable, *, session: float) -> str:
+    columns = list(dict.fromkeys((*old.columns, *new.columns, "batch")))
+    cells: dict[str, Sequence[str]] = {"batch": [f"{session:g}"] * len(new.rows), **new.cells}
     if "order" in old.columns and "order" not in new.columns:
         last = max((float(x) for x in old.cells["order"] if x), default=0.0)
         cells["order"] = [f"{last + k:g}" for k in range(1, len(new.rows) + 1)]

@@ -85,6 +85,7 @@ CONDITIONS: dict[str, Column] = {
     "impact_speed_m_s_std": _not_negative("std", "standard deviation of the speed"),
     "temperature_K": _positive("condition", "temperature of the bodies", high=1e4),
     "order": Column("condition", "place in the order of testing"),
+    "batch": Column("condition", "which session it is of; 1 if empty", low=1.0, high=1e6),
     "spot": Column("text", "same text: same place on the flat"),
     "approach_tangential_m_s": Column("condition", "tangential speed of the centre before"),
     "approach_spin_rad_s": Column("condition", "angular velocity before, counter-clockwise"),

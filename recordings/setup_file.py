@@ -14,6 +14,7 @@ import tomlkit
 from pydantic import BaseModel, Field
 
 from ..core.rig import BodyTable, Quantity, Rig
+from .bench import Bench
 
 FORMAT = "recording-set/1"
 
@@ -34,6 +35,8 @@ class SetFile(Rig):
     """Version of the file's format."""
     assume: tuple[str, ...] = Field(default=(), strict=False)
     """Mechanisms that a diagnosis takes to act, as published."""
+    rig: Bench = Bench()
+    """What can be done next."""
 
 
 def flowing(setup: Rig) -> dict[str, BodyTable]:

@@ -51,8 +51,8 @@ class Trials:
         impact, none of a press.
     angle_deg_std, impact_speed_m_s_std, drop_height_m_std
         Standard deviations [deg, m/s, m]; that of a height is common to all trials of it.
-    temperature_K, order
-        Temperature [K]; place in the order of testing.
+    temperature_K, order, batch
+        Temperature [K]; place in the order of testing; session, 1 where it is not told.
     approach_tangential_m_s, approach_spin_rad_s
         Tangential speed of the centre [m/s] and angular velocity [rad/s] before.
     load_N, load_N_std
@@ -79,6 +79,7 @@ class Trials:
     drop_height_m_std: Array = field(default_factory=lambda: np.empty(0))
     temperature_K: Array = field(default_factory=lambda: np.empty(0))
     order: Array = field(default_factory=lambda: np.empty(0))
+    batch: Array = field(default_factory=lambda: np.empty(0))
     approach_tangential_m_s: Array = field(default_factory=lambda: np.empty(0))
     approach_spin_rad_s: Array = field(default_factory=lambda: np.empty(0))
     load_N: Array = field(default_factory=lambda: np.empty(0))
@@ -107,6 +108,11 @@ class Trials:
     def pressed(self) -> Mask:
         """Which rows are quasi-static presses, shape (n,)."""
         return np.asarray(~np.isnan(self.load_N))
+
+    @property
+    def sessions(self) -> Array:
+        """Which session each row is of, shape (n,)."""
+        return np.nan_to_num(self.batch, nan=1.0)
 
     def take(self, rows: npt.ArrayLike) -> Trials:
         """Return some of the rows: indices or a mask."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from ...dynamics.mechanisms.arithmetic import as_deep, deepest
 from ...dynamics.mechanisms.base import Constants, Mechanism, Surroundings
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
+from ...recordings.bench import Bench
 from ..baseline.laws import LawChoice, laws_of, without_curves
 from ..curves import readings_of
 from ..rules import RULES
@@ -67,6 +68,8 @@ class Problem:
     """Mechanisms that act whatever is found, as published."""
     sees_dents: bool = False
     """Whether diameters of dents were measured, so that the contact's radius matters."""
+    bench: Bench = field(default_factory=Bench)
+    """What can be done next."""
 
     @property
     def n_nuisances(self) -> int:
@@ -276,6 +279,7 @@ def problem_of(
     problem = Problem(
         recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
+        bench=setup.rig,
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)
@@ -289,7 +293,10 @@ def problem_of(
     readings = {name: r for name, r in readings.items() if name not in again}
     trials = recordings.trials
     driven = np.where(trials.pressed, trials.load_N, approach.normal)
-    seen = cells_of(readings, driven, trials.order, problem.conditions, trials.varied)
+    varied = dict(trials.varied)
+    if np.ptp(trials.sessions):
+        varied["batch"] = tuple(f"{k:g}" for k in trials.sessions)
+    seen = cells_of(readings, driven, trials.order, problem.conditions, varied)
     if len(seen.cells) == 0:
         known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(

@@ -44,28 +44,10 @@ class Candidate:
     like: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class PressSeries:
-    """Quasi-static presses of one striker.
-
-    Parameters
-    ----------
-    change
-        In words.
-    conditions
-        One for each load.
-    each
-        Presses at each load.
-    """
-
-    change: str
-    conditions: tuple[Condition, ...]
-    each: int
-
-
-def press_series(problem: Problem) -> list[PressSeries]:
+def presses_of(problem: Problem) -> list[Candidate]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
-    found = []
+    found: list[Candidate] = []
+    bench = problem.bench.loads_N or BENCH
     second = second_of(problem.rig)
     struck = "flat" if second is None else "second sphere"
     # a free sphere is not pressed
@@ -80,18 +62,18 @@ def press_series(problem: Problem) -> list[PressSeries]:
         if any(one.press is not None for one, _ in trials):
             # pressed already: what is new lies beyond
             ends = ends * np.array([1.0 / RULES.press_beyond, RULES.press_beyond])
-        low, high = np.clip(ends, *BENCH)
-        if not ends[0] < BENCH[1] or not ends[1] > BENCH[0]:
+        low, high = np.clip(ends, *bench)
+        if not ends[0] < bench[1] or not ends[1] > bench[0]:
             continue
         few = RULES.press_loads if high > RULES.press_wide * low else 2
         loads = [_round(x) for x in np.geomspace(low if few > 2 else low / 2.0, high, few)]
-        pressed = tuple(at_load(c, scene, load) for load in loads)
-        told = ", ".join(f"{load:g}" for load in loads[:-1])
-        text = (
-            f"press {name} slowly on the same {struck}, each time on a fresh place, "
-            f"{RULES.press_each} times each to {told} and {loads[-1]:g} N"
-        )
-        found.append(PressSeries(text, pressed, RULES.press_each))
+        found += [
+            Candidate(
+                f"press {name} slowly on the same {struck}, each time on a fresh place, "
+                f"{RULES.press_each} times to {load:g} N", at_load(c, scene, load),
+            )
+            for load in loads
+        ]  # fmt: skip
     return found
 
 
@@ -126,39 +108,76 @@ def _round(load: float) -> float:
 
 
 def candidates_of(problem: Problem) -> list[Candidate]:
-    """Return trials within the speeds, angles and bodies of a set, then those to be built."""
+    """Return trials within the speeds, angles and bodies of a set or its rig."""
     own: dict[str, list[Condition]] = {}
     for c in problem.conditions:
         if c.press is None:
             own.setdefault(c.striker, []).append(c)
     if not own:
         return []
-    speeds = [c.speed for tested in own.values() for c in tested]
+    speeds = problem.bench.speeds_m_s or [c.speed for tested in own.values() for c in tested]
     places = np.geomspace(min(speeds), max(speeds), RULES.speeds_tried)
     fallen = any(c.around.from_height for c in problem.conditions)
-    if not fallen and all(
+    if not (fallen or problem.bench.speeds_m_s) and all(
         max(c.speed for c in x) < RULES.same_condition * min(c.speed for c in x)
         for x in own.values()
     ):
         # each striker has one speed, and no height that could be another: a spring gives it
         places = np.zeros(0)
     first = {name: tested[0] for name, tested in own.items()}
-    struck = problem.rig.of.get("target.radius_m", math.inf)
-    seat = -struck if struck < 0.0 else math.inf
+    first |= {name: replace(c, striker=name) for name, c in _idle(problem, first).items()}
     found: list[Candidate] = []
     for name, c in sorted(first.items()):
         fresh = replace(c, after=-1)
         tried = [_moved(fresh, float(v)) for v in places]
         found += [
-            Candidate(f"{name} at {x.speed:.2g} m/s{_at(x)}", x)
+            Candidate(f"{name} at {x.speed:.2g} m/s{at_degrees(x)}", x, like=_of_set(problem, name))
             for x in tried
-            if not any(_alike(x, there) for there in own[name])
+            if not any(_alike(x, there) for there in own.get(name, ()))
         ]
         found += _angles(problem, fresh, float(np.median(speeds)))
-    for name, c in sorted(first.items()):
-        at = _moved(replace(c, after=-1), float(max(speeds)))
+    return found
+
+
+def to_build(problem: Problem) -> list[Candidate]:
+    """Return strikers of another size, each at the largest speed."""
+    blown = [c for c in problem.conditions if c.press is None]
+    fastest = max((c.speed for c in blown), default=0.0)
+    struck = problem.rig.of.get("target.radius_m", math.inf)
+    seat = -struck if struck < 0.0 else math.inf
+    found: list[Candidate] = []
+    for name, c in sorted({c.striker: c for c in reversed(blown)}.items()):
+        at = _moved(replace(c, after=-1), fastest)
         found += _built(problem.rig.striker(name), name, at, widest=seat)
     return found
+
+
+def again(problem: Problem) -> list[int]:
+    """Return more of what was done: of each striker up to so many conditions, slow to fast."""
+    found: list[int] = []
+    blown = [(c.speed, k, c.striker) for k, c in enumerate(problem.conditions) if c.press is None]
+    for name in sorted({striker for *_, striker in blown}):
+        blows = [k for _, k, striker in sorted(blown) if striker == name]
+        few = np.linspace(0, len(blows) - 1, min(len(blows), RULES.speeds_tried))
+        found += [blows[int(k)] for k in few.round()]
+    return found
+
+
+def _of_set(problem: Problem, name: str) -> str:
+    """A striker of the set's trials of whose kind a striker is: itself, if it struck."""
+    used = [c.striker for c in problem.conditions]
+    rod = problem.rig.striker(name)["length_m"] > 0.0
+    alike = [x for x in used if (problem.rig.striker(x)["length_m"] > 0.0) == rod]
+    return name if name in used else next(iter(alike), "")
+
+
+def _idle(problem: Problem, first: Mapping[str, Condition]) -> dict[str, Condition]:
+    """Strikers of the sheet that have not struck, each with a trial of one of its kind."""
+    end = ".tip_radius_m"
+    names = [k.removeprefix("strikers.").removesuffix(end) for k in problem.rig.of
+             if k.startswith("strikers.") and k.endswith(end)]  # fmt: skip
+    like = {name: _of_set(problem, name) for name in names if name not in first}
+    return {name: first[of] for name, of in like.items() if of in first}
 
 
 def _alike(one: Condition, other: Condition) -> bool:
@@ -175,7 +194,8 @@ def _moved(c: Condition, speed: float) -> Condition:
     )
 
 
-def _at(c: Condition) -> str:
+def at_degrees(c: Condition) -> str:
+    """Return the angle in words; nothing where it is upright."""
     upright = c.incidence > math.pi / 2.0 - 1e-6
     return "" if upright else f" and {math.degrees(c.incidence):.0f} degrees"
 
@@ -185,9 +205,13 @@ def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]
     near = sorted(
         {x.incidence for x in problem.conditions if x.striker == c.striker and x.press is None}
     )
-    if len(near) < 2:
+    stated = problem.bench.angles_deg
+    # where all were upright, nothing says to which side a blow leans, or how it rubs
+    leans = bool(near and stated and near[0] < 0.5 * math.pi - _NEAR)
+    if len(near) < 2 and not leans:
         return
-    for angle in np.linspace(near[0], near[-1], 2 * RULES.angles_tried + 1):
+    low, high = map(math.radians, stated) if stated else (near[0], near[-1])
+    for angle in np.linspace(low, high, 2 * RULES.angles_tried + 1):
         if min(abs(angle - a) for a in near) > _NEAR:
             trial = _moved(c, speed).inclined(float(angle))
             text = f"{c.striker} at {math.degrees(angle):.0f} degrees and {speed:.2g} m/s"
@@ -201,7 +225,7 @@ def _built(
 
     A ball has to be smaller by as much again than the seat of radius `widest` [m] that it strikes.
     """
-    where = f"at {c.speed:.2g} m/s{_at(c)}"
+    where = f"at {c.speed:.2g} m/s{at_degrees(c)}"
     mass, length, shank = striker["mass_kg"], striker["length_m"], striker["radius_m"]
     for ratio in (1.0 / RULES.build_ratio, RULES.build_ratio):
         radius = striker["tip_radius_m"] * ratio

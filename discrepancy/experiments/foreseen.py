@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import block_diag, cho_factor, cho_solve
 from scipy.special import logsumexp
 from scipy.stats.qmc import MultivariateNormalQMC
 
@@ -24,6 +25,16 @@ from ..inference.fit import Fit
 from ..inference.linear import Linear, Mixture
 from ..rules import RULES
 from ..unknowns.lawerror import SIZES
+from ..unknowns.wrong_number import wrong_factors
+
+_DRAWN_TOGETHER = 32  # dimensions
+
+
+class Settled(NamedTuple):
+    """A number of the sheet that is measured again: its key, and the relative error of that."""
+
+    key: str
+    std: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +50,9 @@ class Foreseen:
 
 
 def foreseen(
-    simulator: Simulator, wider: Problem, fitted: Fit, rng: np.random.Generator
-) -> Foreseen:
+    simulator: Simulator, wider: Problem, fitted: Fit, rng: np.random.Generator,
+    settled: Sequence[Settled] = (),
+) -> Foreseen:  # fmt: skip
     """Return what the further cells of a wider problem would show under an explanation.
 
     Parameters
@@ -53,10 +65,14 @@ def foreseen(
         The explanation.
     rng
         Draws samples of the mechanisms' parameters.
+    settled
+        Numbers of the sheet that are measured again: ln of each, over what is stated, stands
+        behind the cells.
     """
     whole, known = simulator.of(wider), len(simulator.problem.cells)
     z, values = fitted.z, fitted.grid.values(fitted.place)
     here, linear = derivatives(whole, fitted.mechanisms, values, z)
+    linear = _with_numbers(linear, wider, settled)
     measured = simulator.problem.cells.value + linear.J[:known] @ z
     parts = Mixture.of(linear, wider.n_nuisances, SIZES, FORMS)
     residual = measured - here[:known]
@@ -67,12 +83,28 @@ def foreseen(
     likeliest = parts.parts[int(np.argmax(said))]
     total = likeliest.total
     gain = cho_solve(cho_factor(total[:known, :known], lower=True), total[:known, known:]).T
-    seen = whole.predict(fitted.mechanisms, _samples(fitted, rng))
+    samples = _samples(fitted, rng)
+    off = [wrong_factors(fitted.mechanisms, p.values) for p in samples]
+    numbers = np.array([[np.log(f.get(s.key, 1.0)) for s in settled] for f in off])
+    numbers = numbers.reshape(len(samples), len(settled)) + linear.J[len(here) :] @ z
+    seen = np.hstack([whole.predict(fitted.mechanisms, samples), numbers])
     means = seen[:, known:] - linear.J[known:] @ z + (measured - seen[:, :known]) @ gain.T
     covariance = total[known:, known:] - gain @ total[:known, known:]
     if len(means) > 1:
         covariance = covariance + np.atleast_2d(np.cov(means.T))
     return Foreseen(means.mean(axis=0), np.asarray(0.5 * (covariance + covariance.T)))
+
+
+def _with_numbers(linear: Linear, problem: Problem, settled: Sequence[Settled]) -> Linear:
+    """The algebra with a further row for each number of the sheet."""
+    place = {n.name: i for i, n in enumerate(problem.nuisances) if n.log}
+    J = np.zeros((len(settled), linear.J.shape[1]))
+    for row, one in zip(J, settled, strict=True):
+        if one.key in place:
+            row[place[one.key]] = problem.nuisances[place[one.key]].spread
+    noise = block_diag(linear.noise, np.diag([s.std**2 for s in settled]))
+    form = np.pad(linear.form, ((0, len(settled)), (0, 0))) if linear.form.size else linear.form
+    return replace(linear, noise=noise, J=np.vstack([linear.J, J]), form=form)
 
 
 def _first(linear: Linear, known: int) -> Linear:
@@ -130,10 +162,11 @@ def information(seen: Sequence[Foreseen], weight: Sequence[float]) -> float:
 
 @cache
 def _spread_out(n: int) -> Array:
-    """Standard normal draws (draws, n) without clumps."""
-    return np.asarray(
-        MultivariateNormalQMC(np.zeros(n), rng=np.random.default_rng(0)).random(RULES.noise_draws)
-    )
+    """Standard normal draws (draws, n) without clumps, the same for the first n of more."""
+    if n % _DRAWN_TOGETHER:
+        return _spread_out(n - n % _DRAWN_TOGETHER + _DRAWN_TOGETHER)[:, :n]
+    drawn = MultivariateNormalQMC(np.zeros(n), rng=np.random.default_rng(0))
+    return np.asarray(drawn.random(RULES.noise_draws))
 
 
 def _log_density(y: Array, seen: Foreseen, lower: Array) -> Array:
@@ -142,4 +175,4 @@ def _log_density(y: Array, seen: Foreseen, lower: Array) -> Array:
     return np.asarray(-0.5 * np.sum(white**2, axis=0) - np.sum(np.log(np.diag(lower))))
 
 
-__all__ = ["Foreseen", "discrimination", "foreseen", "information"]
+__all__ = ["Foreseen", "Settled", "discrimination", "foreseen", "information"]

@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import Array, Indices
+from ...core.arrays import Array
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.observables import OBSERVABLES
-from ...core.unstated import unstated_equal
+from ...dynamics.files.second import second_of
 from ..choice.odds import Odds
 from ..comparison.conditions import LOAD_CLASS
 from ..comparison.forward import Point, Simulator
@@ -26,71 +27,49 @@ from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
-from .feasible import Candidate, PressSeries, candidates_of, leaves_no_mark, press_series
-from .foreseen import discrimination, foreseen, information
+from ..unknowns.wrong_number import WrongNumber, is_wrong
+from .feasible import (
+    Candidate,
+    again,
+    at_degrees,
+    candidates_of,
+    leaves_no_mark,
+    presses_of,
+    to_build,
+)
+from .foreseen import Settled, discrimination, foreseen, information
+from .proposal import Proposal
+from .session import Option, Session, session_of, takes
 
-_LARGE = ("build", "press")  # another body, or a dozen of presses, beside one more trial
+_ELSEWHERE = ("build", "observable")  # what the rig has not had
+_BY = {"Sy_Pa": "hardness", "mass_kg": "weigh", "tip_radius_m": "calliper", "radius_m": "calliper"}
+_SETTLE = {
+    "hardness": "test the hardness of {}: a third of it is the strength",
+    "weigh": "weigh {}", "calliper": "measure the radius of {} with a calliper or in a picture",
+}  # fmt: skip
+_ERRORS = dict(RULES.settled)
 _PRESSED = dict(RULES.press_reading)
 """What is read of a proposed press, with the relative error of one reading: a stylus or a
 microscope, and a microscope with a scale."""
 
 
-@unstated_equal
-@dataclass(frozen=True, slots=True)
-class Proposal:
-    """What to do, how well it would discriminate, and what it would do to the interval.
-
-    Parameters
-    ----------
-    change
-        In words.
-    expected_discrimination
-        D averaged over the rivals; 0 where there are none.
-    kind
-        `trial`, `press`, `build`, `noise`, `observable` or `none`.
-    information
-        Nats by which the entropy of which rival is true is expected to fall.
-    interval
-        Width of the leading parameter's interval over that of today; nan where not worked out.
-    trial
-        Striker, speed [m/s] and angle [degrees] of a trial, and mass [kg] and tip radius [m]; of
-        presses the striker, the smallest and the largest load [N], and how many.
-    observable
-        What to measure as well, of a proposal of that kind.
-    """
-
-    change: str
-    expected_discrimination: float
-    kind: str = "trial"
-    interval: float = math.nan
-    trial: Mapping[str, str | float] = field(default_factory=dict)
-    information: float = 0.0
-    observable: str = ""
-
-    @property
-    def gains(self) -> tuple[str, ...]:
-        """What it would tell, in words."""
-        found = []
-        apart = math.sqrt(max(self.expected_discrimination, 0.0))
-        differ = f"the explanations would then differ by {apart:.2g} standard deviations"
-        if apart > 0.0:
-            found.append(differ if apart >= RULES.decides else f"once will not decide: {differ}")
-        if math.isfinite(self.interval):
-            found.append(f"the interval would be {self.interval:.2g} times as wide as now")
-        return tuple(found)
-
-
 def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
     """Return the explanations that share the probability, most probable first, and their shares."""
     shared = [(f, odds.probability[f.name]) for f in ranking.fits]
-    shared = sorted(shared, key=lambda item: -item[1])
-    return [(f, p) for i, (f, p) in enumerate(shared[: RULES.rivals]) if i < 2 or p > RULES.rival]
+    return sorted(shared, key=lambda item: -item[1])[: RULES.rivals]
+
+
+class Proposed(NamedTuple):
+    """Every thing to do by itself, best first, and a session's worth together."""
+
+    each: list[Proposal]
+    session: Session
 
 
 def propose(
     simulator: Simulator, ranking: Ranking, odds: Odds, rng: np.random.Generator
-) -> list[Proposal]:
-    """Return what to do next, best first.
+) -> Proposed:
+    """Return what to do next.
 
     Parameters
     ----------
@@ -103,102 +82,184 @@ def propose(
     """
     rivals = rivals_of(ranking, odds)
     if len(rivals) < 2:
-        return []
-    found = _worth_of_each(simulator, rivals, rng)
-    found.sort(key=lambda p: -p.information / (RULES.build_worth if p.kind in _LARGE else 1.0))
+        return Proposed([], Session())
+    found, session = _worth_of_each(simulator, rivals, _options(simulator), rng)
+    if not session.goes_on:
+        found += _worth_of_each(simulator, rivals, _bodies(simulator), rng)[0]
+        worth = sorted((p for p in found if p.kind in _ELSEWHERE), key=lambda p: -p.information)
+        elsewhere = tuple(p for p in worth[:1] if p.information >= RULES.worth)
+        session = replace(session, elsewhere=elsewhere)
+    found.sort(key=lambda p: -p.per_hour)
     best = rivals[0][0]
-    if best.mechanisms:
+    if best.mechanisms and not all(map(is_wrong, best.mechanisms)):
         sharper = _sharper(simulator.problem, best)
         if 1.0 - rivals[0][1] < RULES.rival:
             # nothing left to tell apart: what is left is to know the numbers better
-            return [*sharper, *found]
+            return Proposed([*sharper, *found], session)
         found += sharper
-    return found
+    return Proposed(found, session)
 
 
 def _worth_of_each(
-    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], rng: np.random.Generator
-) -> list[Proposal]:
-    """Trials and further observables, with what each would tell."""
-    options, wider = _options(simulator)
-    seen = [foreseen(simulator, wider, f, rng) for f, _ in rivals]
+    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], plan: _Plan,
+    rng: np.random.Generator,
+) -> tuple[list[Proposal], Session]:  # fmt: skip
+    """What each thing of a plan would tell, and the best of them together."""
+    if not plan.options:
+        return [], Session()
+    seen = [foreseen(simulator, plan.wider, f, rng, plan.settled) for f, _ in rivals]
     weight = [p for _, p in rivals]
-    found = []
-    for cells, proposal in options:
+    found, within = [], []
+    for cells, proposal in plan.options:
         here = [s.of(cells) for s in seen]
-        found.append(
-            replace(
-                proposal, expected_discrimination=discrimination(here, weight),
-                information=information(here, weight),
-            )
+        worth = replace(
+            proposal, expected_discrimination=discrimination(here, weight),
+            information=information(here, weight),
         )  # fmt: skip
+        found.append(worth)
+        if proposal.kind not in _ELSEWHERE:
+            within.append(Option(cells, worth))
+    known = len(simulator.problem.cells)
+    reads = [*plan.wider.cells.observable[known:], *(one.key for one in plan.settled)]
+    session = session_of(
+        simulator.problem.bench, within, seen, {f.name: p for f, p in rivals}, reads
+    )
     # of what else could be measured, the condition of the set where it would tell most
     best: dict[str, Proposal] = {}
     for p in found:
         name = p.observable or p.change
         if name not in best or p.information > best[name].information:
             best[name] = p
-    return list(best.values())
+    return list(best.values()), session
 
 
-def _options(simulator: Simulator) -> tuple[list[tuple[Indices, Proposal]], Problem]:
-    """What could be measured, each with its places among the new cells, and the wider problem."""
-    problem = simulator.problem
-    candidates = candidates_of(problem)
-    rig = problem.rig
-    for c in candidates:
+class _Plan(NamedTuple):
+    """What could be done, the problem with all its cells, and the numbers behind them."""
+
+    options: list[Option]
+    wider: Problem
+    settled: tuple[Settled, ...]
+
+
+class _New:
+    """Cells that are not measured yet, behind those of a problem, and what reads them."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self.simulator, self.problem = simulator, simulator.problem
+        bench = self.problem.bench
+        self.options: list[Option] = []
+        self.conditions = list(self.problem.conditions)
+        self.cells: list[tuple[int, str, float]] = []
+        self.rig, self.laws = self.problem.rig, dict(self.problem.laws)
+        seen = dict.fromkeys((*self.problem.cells.observable, *bench.reads))
+        self.measured = [n for n in seen if "impact" in OBSERVABLES[n].of]
+        self.noise = {name: _noise(simulator, name) for name in self.measured}
+        self.repeats = bench.repeats or max(int(np.median(self.problem.cells.count)), 1)
+        self.strike = self.repeats * takes(bench, "strike")
+
+    def add(self, condition: int, noise: Mapping[str, float], told: Proposal) -> None:
+        """Add a reading of each observable, with its standard error."""
+        first = len(self.cells)
+        self.cells += [(condition, name, std) for name, std in noise.items()]
+        self.options.append(Option(np.arange(first, len(self.cells)), told))
+
+    def blow(self, c: Candidate, minutes: float) -> None:
+        """Add a trial that was not made yet."""
+        name = c.condition.striker
         if c.built:
-            rig = rig.with_striker(c.condition.striker, c.like, c.built)
-    laws = {c.condition.striker: problem.laws[c.like or c.condition.striker] for c in candidates}
-    conditions = (*problem.conditions, *(c.condition for c in candidates))
-    seen = list(dict.fromkeys(problem.cells.observable))
-    measured = [name for name in seen if "impact" in OBSERVABLES[name].of]
-    noise = {name: _noise(simulator, name) for name in measured}
-    first = len(problem.conditions)
-    options: list[tuple[Indices, Proposal]] = []
-    new: list[tuple[int, str]] = []
-    for k, c in enumerate(candidates):
-        at = np.arange(len(new), len(new) + len(measured))
-        options.append((at, _proposal(c, measured, rig)))
-        new += [(first + k, name) for name in measured]
-    for name in _not_measured(problem):
-        noise[name] = _noise(simulator, name)
-        for k, one in enumerate(problem.conditions):
+            self.rig = self.rig.with_striker(name, c.like, c.built)
+        self.laws[name] = self.problem.laws[c.like or name]
+        self.conditions.append(c.condition)
+        told = replace(_proposal(c, self.measured, self.rig, self.repeats), minutes=minutes)
+        self.add(len(self.conditions) - 1, self.noise, told)
+
+    def plan(self, settled: tuple[Settled, ...] = ()) -> _Plan:
+        """Return the problem with all of them."""
+        cells = self.problem.cells
+        condition, observable, std = zip(*self.cells, strict=True) if self.cells else ((), (), ())
+        behind = replace(
+            cells, condition=np.append(cells.condition, condition).astype(np.intp),
+            observable=(*cells.observable, *observable),
+            value=np.append(cells.value, np.zeros(len(std))), std=np.append(cells.std, std),
+            count=np.append(cells.count, np.ones(len(std))).astype(np.intp),
+        )  # fmt: skip
+        wide = replace(
+            self.problem, conditions=tuple(self.conditions), cells=behind, rig=self.rig,
+            laws=self.laws,
+        )  # fmt: skip
+        return _Plan(self.options, wide.with_error(self.problem.error), settled)
+
+
+def _options(simulator: Simulator) -> _Plan:
+    """Return what the rig can do, and what it could read with another instrument."""
+    problem, new = simulator.problem, _New(simulator)
+    for c in candidates_of(problem):
+        new.blow(c, new.strike)
+    # what repeats share does not average away: half of one reading's noise
+    worse = math.sqrt(1.0 + 0.5 * new.repeats)
+    for k in again(problem):
+        one = problem.conditions[k]
+        c = Candidate(f"{one.striker} {one.told}{at_degrees(one)} once more", one)
+        told = replace(_proposal(c, new.measured, new.rig, new.repeats), minutes=new.strike)
+        new.add(k, {n: worse * x for n, x in new.noise.items()}, told)
+    _add_instruments(new)
+    if not math.isnan(each := takes(problem.bench, "press")):
+        for c in presses_of(problem):
+            new.conditions.append(c.condition)
+            told = replace(_pressing(c), minutes=each * RULES.press_each)
+            read = {name: _press_noise(problem, name) for name in _PRESSED}
+            new.add(len(new.conditions) - 1, read, told)
+    return new.plan(_settling(problem, len(new.cells), new.options))
+
+
+def _bodies(simulator: Simulator) -> _Plan:
+    """Return what could be built."""
+    new = _New(simulator)
+    minutes = new.strike + takes(new.problem.bench, "build")
+    for c in () if math.isnan(minutes) else to_build(new.problem):
+        new.blow(c, minutes)
+    return new.plan()
+
+
+def _add_instruments(new: _New) -> None:
+    """What else could be read, where it can be had, of each condition that is struck again."""
+    minutes = new.strike + takes(new.problem.bench, "instrument")
+    for name in () if math.isnan(minutes) else _not_measured(new.problem):
+        noise = _noise(new.simulator, name)
+        for k, one in enumerate(new.problem.conditions):
             if ("impact" if one.press is None else "press") not in OBSERVABLES[name].of:
                 continue
-            label = OBSERVABLES[name].label
-            text = f"measure {label} too, first of {one.striker} {one.told}"
-            told = Proposal(text, 0.0, "observable", observable=name)
-            options.append((np.array([len(new)]), told))
-            new.append((k, name))
-    std = [noise[name] for _, name in new]
-    for series in press_series(problem):
-        first = len(conditions)
-        conditions = (*conditions, *series.conditions)
-        read = [(first + k, name) for k in range(len(series.conditions)) for name in _PRESSED]
-        options.append((np.arange(len(new), len(new) + len(read)), _pressing(series)))
-        new += read
-        std += [_press_noise(problem, name, series.each) for _, name in read]
-    cells = problem.cells
-    more = replace(
-        cells, condition=np.append(cells.condition, [k for k, _ in new]).astype(np.intp),
-        observable=(*cells.observable, *(name for _, name in new)),
-        value=np.append(cells.value, np.zeros(len(new))),
-        std=np.append(cells.std, std),
-        count=np.append(cells.count, np.ones(len(new))).astype(np.intp),
-    )  # fmt: skip
-    wider = replace(
-        problem, conditions=conditions, cells=more, rig=rig, laws={**problem.laws, **laws}
-    )
-    return options, wider.with_error(problem.error)
+            text = f"measure {OBSERVABLES[name].label} too, first of {one.striker} {one.told}"
+            told = Proposal(text, 0.0, "observable", observable=name, minutes=minutes)
+            new.add(k, {name: noise}, told)
 
 
-def _proposal(c: Candidate, measured: list[str], rig: RigNumbers) -> Proposal:
+def _settling(problem: Problem, first: int, options: list[Option]) -> tuple[Settled, ...]:
+    """Numbers of the sheet that can be measured again; `first` is the place of the first."""
+    keys = [n.name for n in problem.nuisances]
+    keys += [one.key for one in problem.wrong_numbers if type(one) is WrongNumber]
+    found: list[Settled] = []
+    for key in dict.fromkeys(keys):
+        body, _, word = key.rpartition(".")
+        kind = _BY.get(word, "")
+        if not kind or math.isnan(minutes := takes(problem.bench, kind)):
+            continue
+        of = "the flat" if body == "target" else body.removeprefix("strikers.")
+        if second_of(problem.rig) is not None and body == "target":
+            of = "the second sphere"
+        text = _SETTLE[kind].format(of)
+        told = Proposal(text, 0.0, kind, trial={"key": key}, minutes=minutes)
+        options.append(Option(np.array([first + len(found)]), told))
+        found.append(Settled(key, _ERRORS[kind]))
+    return tuple(found)
+
+
+def _proposal(c: Candidate, measured: list[str], rig: RigNumbers, repeats: int) -> Proposal:
     striker = rig.striker(c.condition.striker)
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "speed_m_s": c.condition.speed,
         "angle_deg": math.degrees(c.condition.incidence), "mass_kg": striker["mass_kg"],
-        "tip_radius_m": striker["tip_radius_m"],
+        "tip_radius_m": striker["tip_radius_m"], "repeats": float(repeats),
     }  # fmt: skip
     words = ", ".join(OBSERVABLES[n].label for n in measured)
     return Proposal(
@@ -206,21 +267,21 @@ def _proposal(c: Candidate, measured: list[str], rig: RigNumbers) -> Proposal:
     )
 
 
-def _pressing(series: PressSeries) -> Proposal:
-    loads = [c.press.load for c in series.conditions if c.press is not None]
+def _pressing(c: Candidate) -> Proposal:
+    assert c.condition.press is not None
     trial: dict[str, str | float] = {
-        "striker": series.conditions[0].striker, "least_load_N": min(loads),
-        "load_N": max(loads), "presses": float(series.each * len(loads)),
+        "striker": c.condition.striker, "load_N": c.condition.press.load,
+        "repeats": float(RULES.press_each),
     }  # fmt: skip
     words = " and ".join(OBSERVABLES[n].label for n in _PRESSED)
-    return Proposal(f"{series.change}, measuring {words}", 0.0, "press", trial=trial)
+    return Proposal(f"{c.change}, measuring {words}", 0.0, "press", trial=trial)
 
 
-def _press_noise(problem: Problem, name: str, each: int) -> float:
-    """Standard error of what a series reads at one load, the load's own in it."""
+def _press_noise(problem: Problem, name: str) -> float:
+    """Standard error of what repeated presses read at one load, the load's own in it."""
     law = RULES.dent_law_error if name == "dent_diameter_m" and not problem.sees_dents else 0.0
     load = LOAD_CLASS * OBSERVABLES[name].power
-    return math.sqrt(_PRESSED[name] ** 2 / each + law**2 + load**2)
+    return math.sqrt(_PRESSED[name] ** 2 / RULES.press_each + law**2 + load**2)
 
 
 def _not_measured(problem: Problem) -> list[str]:

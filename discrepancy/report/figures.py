@@ -11,11 +11,15 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..correction import Correction
+from ..findings import After
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint
 from .svg import SHAPES, Plot, PlotAxis, figure, room
 
 # limit: distance of two simulations of one number in a figure [axis]: a marker's half
 _DRAWN_APART = 0.012
+
+# limit: explanations of a path [-]: a screen
+_PATHS = 5
 
 
 class _Series(NamedTuple):
@@ -161,3 +165,36 @@ def correction(found: Iterable[Correction]) -> str:
         panels[-1].level(1.0)
         begin += _WIDTH
     return figure(panels, "factor on the force law over the depth", width=begin, height=216.0)
+
+
+def paths_of(history: Sequence[After]) -> list[str]:
+    """Return the explanations whose path is drawn: those that were ever the most probable."""
+    most: dict[str, float] = {}
+    for one in history:
+        for name, p in one.probabilities.items():
+            most[name] = max(most.get(name, 0.0), p)
+    return sorted(most, key=lambda name: -most[name])[:_PATHS]
+
+
+def path(history: Sequence[After]) -> str:
+    """Return the probability of each explanation of `paths_of` after each session."""
+    y = PlotAxis(0.0, 1.0, 186.0, _TOP)
+    left = room([y], 1)
+    places = np.arange(1.0, len(history) + 1.0)
+    x = PlotAxis(0.7, len(history) + 0.3, left, _RIGHT)
+    panel = Plot(x, y)
+    panel.frame("", ["probability [-]"], left)
+    names = paths_of(history)
+    last = max(names, key=lambda name: history[-1].probabilities.get(name, 0.0))
+    for marker, name in zip(MARKERS, names, strict=False):
+        p = [one.probabilities.get(name, 0.0) for one in history]
+        colour = "verdict" if name == last else "ink"
+        panel.line(places, p, colour, "-" if name == last else "--")
+        for k, value in enumerate(p):
+            panel.marker(float(places[k]), value, marker, colour, full=name == last)
+    for place, one in zip(places.tolist(), history, strict=True):
+        panel.text(place, f"after session {one.batch:g}")
+        panel.text(place, f"{one.trials} trials", line=2)
+    return figure(
+        [panel], "probability of each explanation after each session", width=_WIDTH, height=216.0
+    )

@@ -13,10 +13,10 @@ from ... import __version__
 from ...core.observables import OBSERVABLES
 from ...core.output import csv_text, write_file
 from ..findings import Verdict
-from .figures import comparison, correction
+from .figures import comparison, correction, path, paths_of
 from .series import SeriesPoint
 from .story import Story, story_of
-from .wording import GLOSSARY
+from .wording import GLOSSARY, explanation
 
 _TEMPLATE = Path(__file__).parent / "template"
 _SHAPES = ("●", "■", "▲", "◆", "▼", "✚", "✖", "★")
@@ -66,6 +66,7 @@ def page(v: Verdict, story: Story) -> str:
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     panels = panels_of(story)
+    words = [explanation(name, v.titles) for name in paths_of(v.history)]
     observables = {p.observable: p.label for p in panels}
     return environment.get_template("report.html").render(
         s=story,
@@ -74,6 +75,8 @@ def page(v: Verdict, story: Story) -> str:
         panels=panels,
         observables=observables,
         corrected=correction(v.corrections) if v.corrections else "",
+        path=path(v.history) if v.history else "",
+        paths=list(zip(_SHAPES, words, strict=False)),
         mechanisms=v.mechanisms,
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),

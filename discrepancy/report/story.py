@@ -13,6 +13,7 @@ from ...dynamics.files.second import second_of
 from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
+from .next_session import change_lines, next_lines
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
 from .text import STORY_LEAST, headline, nowhere, own_parameters, why
 from .wording import (
@@ -82,7 +83,9 @@ class Story:
     numbers, scores, excluded, limits
         Tables for those who want to know.
     next_step, further
-        The next experiment as an instruction, and other useful ones.
+        Whether to go on; steps of the next session, and what its outcome would mean.
+    changed
+        What the last session changed.
     """
 
     name: str
@@ -109,6 +112,7 @@ class Story:
     limits: ToldCells
     next_step: str
     further: tuple[str, ...]
+    changed: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the figures show, for programs."""
@@ -123,7 +127,7 @@ class Story:
 
 def story_of(v: Verdict) -> Story:
     """Return what there is to say of a verdict."""
-    step, *further = [*_instructions(v), ""]
+    step, *further = [*next_lines(v), ""]
     return Story(
         name=v.name,
         finding=headline(v),
@@ -158,6 +162,7 @@ def story_of(v: Verdict) -> Story:
         limits=_limits(v),
         next_step=step,
         further=tuple(filter(None, further)),
+        changed=tuple(change_lines(v)),
     )
 
 
@@ -285,12 +290,3 @@ def _limits(v: Verdict) -> ToldCells:
         if k in units
     )
     return ToldCells(("what", "number", "would have been seen from"), rows)
-
-
-def _instructions(v: Verdict) -> list[str]:
-    """Return what is proposed, best first, with what each would tell."""
-    told = []
-    for q in v.proposals:
-        text = f"Strike again: {q.change}" if q.kind == "trial" else q.change
-        told.append(". ".join(f"{s[0].upper()}{s[1:]}" for s in (text, *q.gains)) + ".")
-    return told

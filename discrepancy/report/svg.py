@@ -116,6 +116,10 @@ class Plot:
         dashes = f"stroke-dasharray:{_DASHES[look]}" if _DASHES[look] else ""
         self._path(f"M{self._through(xs, ys)}", colour, 1.1, dashes)
 
+    def text(self, x: float, text: str, line: int = 1) -> None:
+        """Write below the axis across."""
+        self._text(float(self.x.at(x)), self.y.start + 12.0 * line, text)
+
     def level(self, value: float) -> None:
         """Draw a value across the panel."""
         self._path(f"M{self.x.start:g} {self.y.at(value):.1f}H{self.x.end:g}", "ink", 0.8)

@@ -10,6 +10,7 @@ from ..choice.decide import WRONG_INPUT
 from ..choice.odds import OUTSIDE, SURE
 from ..findings import Verdict, WrongInput
 from ..rules import RULES
+from .next_session import change_lines, next_lines
 from .wording import (
     compared,
     counted,
@@ -219,9 +220,8 @@ def lines(v: Verdict) -> list[str]:
                 f"  {c.phase}: times {c.factor[k]:.2f} ({c.low[k]:.2f} to {c.high[k]:.2f}) at a "
                 f"depth of {c.depth_over_R[k]:.2g} R"
             )
-    if v.proposals:
-        first = v.proposals[0]
-        out += ["", "Next experiment", f"  {first.change}", *(f"  {gain}" for gain in first.gains)]
+    if step := [*change_lines(v), *next_lines(v)]:
+        out += ["", "Next experiment", *(f"  {line}" for line in step)]
     if v.limits and v.verdict == "adequate":
         out += ["", "What would have been seen"]
         out += [f"  {k}: {x:.3g} or more" for k, x in v.limits.items()]

@@ -22,6 +22,7 @@ from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture
 from dentscope.discrepancy.rank import Ranking, Screened
 from dentscope.dynamics.mechanisms.base import Parameter, Surroundings
+from dentscope.recordings.bench import Bench
 
 NONE = np.zeros((0, 0))
 
@@ -70,6 +71,8 @@ class Problem:
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     wrong_numbers: tuple[Any, ...] = ()
     assumed: tuple[Any, ...] = ()
+    nuisances: tuple[Any, ...] = ()
+    bench: Bench = field(default_factory=Bench)
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
     @property

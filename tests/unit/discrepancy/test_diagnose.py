@@ -26,7 +26,7 @@ from dentscope.studies.proof.generators import folder, truth
 
 KEYS = """format set seed version audit verdict mechanisms wrong_inputs family
 alternatives inclusion probabilities scores located parameters nuisance_pulls surprise
-excluded limits improvement misfit correction next_experiment notes""".split()
+excluded limits improvement misfit correction next_experiment history notes""".split()
 
 
 SOFT = 1

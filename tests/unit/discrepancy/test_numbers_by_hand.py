@@ -12,7 +12,7 @@ from dentscope.discrepancy.choice.outside import odd_repeats, outside_of
 from dentscope.discrepancy.comparison.cells import Scatter, cells_of
 from dentscope.discrepancy.curves.readings import Readings, _corrected
 from dentscope.discrepancy.estimates import law_notes
-from dentscope.discrepancy.experiments.next_experiment import Proposal
+from dentscope.discrepancy.experiments.proposal import Proposal
 from dentscope.discrepancy.inference.derivatives import FORMS, derivatives, form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import outlying

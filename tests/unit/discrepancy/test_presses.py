@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
-from dentscope.discrepancy.experiments.feasible import BENCH, press_series
+from dentscope.discrepancy.experiments.feasible import BENCH, presses_of
 from dentscope.discrepancy.inference.fit import baseline_situations
 from dentscope.discrepancy.nulls.laws import NullCurve
 from dentscope.discrepancy.nulls.press import press
@@ -90,12 +90,13 @@ def test_a_rate_acts_in_a_press_by_the_stated_rate_only(problem):
 
 
 def test_presses_are_proposed_within_a_bench_press_and_as_deep(problem):
-    (series,) = press_series(problem(IMPACTS))
-    loads = [c.press.load for c in series.conditions]
+    found = presses_of(problem(IMPACTS))
+    loads = [c.condition.press.load for c in found]
     assert len(loads) == 4
     assert BENCH[0] <= min(loads) < max(loads) <= BENCH[1]
-    assert [c.speed for c in series.conditions][::3] == pytest.approx([1.0, 3.0], rel=0.05)
-    assert "press ball slowly" in series.change
+    speeds = [c.condition.speed for c in found]
+    assert speeds[::3] == pytest.approx([1.0, 3.0], rel=0.05)
+    assert all("press ball slowly" in c.change for c in found)
 
 
 def test_null_laws_are_pressed_along_their_own_curve():

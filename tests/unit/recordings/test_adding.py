@@ -37,6 +37,7 @@ def test_rows_go_below_those_that_are_there(folder, capsys):
     now = read(folder)
     assert now.trials.trial == (*first.trials.trial, "slow")
     assert now.trials.varied["x_day"][-2:] == ("", "2")
+    assert now.trials.sessions.tolist() == [1.0] * len(first.trials) + [2.0]
     *after, _ = (folder / "trials.csv").read_text().splitlines()
     assert all(x.startswith(y) for x, y in zip(after, before.splitlines(), strict=True))
 
@@ -59,6 +60,40 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(folder, text, told)
         add_trials(folder, path)
     assert "rows.csv" in str(raised.value)
     assert (folder / "trials.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        ("new,{striker},90,9", "row 2, column impact_speed_m_s: 9 m/s beyond the rig"),
+        ("new,{striker},10,1", "row 2, column angle_deg: 10 degrees beyond the rig"),
+    ],
+)
+def test_what_the_rig_cannot_do_is_refused(folder, row, told):
+    with (folder / "set.toml").open("a") as stream:
+        stream.write("\n[rig]\nspeeds_m_s = [0.3, 4]\nangles_deg = [20, 90]\n")
+    before, striker = (folder / "trials.csv").read_bytes(), read(folder).trials.striker[0]
+    head = "trial,striker,angle_deg,impact_speed_m_s"
+    with pytest.raises(InputErrors, match=told):
+        add_trials(folder, rows(folder, f"{head}\n{row.format(striker=striker)}\n"))
+    assert (folder / "trials.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[rig]\nspeeds_m_s = [3, 0.4]", "rig.speeds_m_s"),
+        ("[rig]\nspeed = 1", "rig.speed"),
+        ('[rig]\nreads = ["depth"]', "'depth' is none of restitution"),
+        ("[rig.minutes]\nstrike = -1", "rig.minutes.strike"),
+        ("[rig.minutes]\nstrikes = 1", "rig.minutes.strikes"),
+    ],
+)
+def test_a_rig_that_cannot_be_is_refused_by_its_key(folder, text, told):
+    with (folder / "set.toml").open("a") as stream:
+        stream.write(f"\n{text}\n")
+    with pytest.raises(InputErrors, match=told):
+        read(folder)
 
 
 def test_no_folder_is_made_around_a_set_that_is_not_there(tmp_path):

@@ -15,21 +15,23 @@ from dentscope.discrepancy.baseline.laws import _apart
 from dentscope.discrepancy.baseline.solve import _level
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
-from dentscope.discrepancy.experiments.feasible import candidates_of, press_series
+from dentscope.discrepancy.experiments.feasible import candidates_of, presses_of, to_build
 from dentscope.discrepancy.experiments.foreseen import _samples, _spread_out
 from dentscope.discrepancy.experiments.next_experiment import (
-    Proposal,
     _noise,
     _press_noise,
     _sharper,
     propose,
     rivals_of,
 )
+from dentscope.discrepancy.experiments.proposal import Proposal
+from dentscope.discrepancy.experiments.session import Session
 from dentscope.discrepancy.inference.sampling import _next_step
 from dentscope.discrepancy.metal.estimate import rate_prior
 from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
 from dentscope.discrepancy.unknowns.lawerror import components
 from dentscope.dynamics import Press
+from dentscope.recordings.bench import Bench
 
 BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
         "inertia_kg_m2": 1.2e-6}  # fmt: skip
@@ -37,14 +39,14 @@ BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01
 
 def test_speeds_are_proposed_in_four_steps_over_those_tested(toy) -> None:
     given = toy.problem([0.0, 0.0], speeds=[1.0, 16.0], rig=toy.rig_of(ball=BALL))
-    found = [c.condition.speed for c in candidates_of(given) if not c.built]
+    found = [c.condition.speed for c in candidates_of(given)]
     assert found == pytest.approx([2.0, 4.0, 8.0])
 
 
 def test_a_speed_within_a_twentieth_of_a_tested_one_is_not_proposed(toy) -> None:
     def speeds(*tested):
         given = toy.problem([0.0] * len(tested), speeds=tested, rig=toy.rig_of(ball=BALL))
-        return [c.condition.speed for c in candidates_of(given) if not c.built]
+        return [c.condition.speed for c in candidates_of(given)]
 
     assert speeds(1.0, 1.049) == []
     assert speeds(1.0, 4.0, 2.0 * 1.04) == pytest.approx([2.0**0.5, 2.0**1.5])
@@ -55,13 +57,13 @@ def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
     given = toy.problem([0.0, 0.0], speeds=[1.0, 1.0], rig=toy.rig_of(ball=BALL))
     lean = tuple(toy.condition(1.0, angle=math.radians(a)) for a in (40.0, 80.0))
     found = candidates_of(replace(given, conditions=lean))
-    seen = [round(math.degrees(c.condition.angle), 6) for c in found if not c.built]
+    seen = [round(math.degrees(c.condition.angle), 6) for c in found]
     assert sorted(set(seen) - {40.0, 80.0}) == [45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0]
 
 
 def test_a_body_to_be_built_is_half_or_twice_as_large(toy) -> None:
     given = toy.problem([0.0, 0.0], speeds=[1.0, 2.0], rig=toy.rig_of(ball=BALL))
-    radii = sorted({c.built["radius_m"] for c in candidates_of(given) if c.built})
+    radii = sorted({c.built["radius_m"] for c in to_build(given)})
     assert radii == pytest.approx([0.005, 0.02])
 
 
@@ -81,52 +83,51 @@ def pressed_set(toy, monkeypatch):
         monkeypatch.setattr(feasible, "at_load", lambda c, s, load: replace(c, press=Press(load)))
         monkeypatch.setattr(feasible, "deepest", lambda s: s.load)  # the table's force is its depth
         given = SimpleNamespace(
-            baseline="elastic-plastic", parts=False, rig=SimpleNamespace(of=second or {})
-        )
-        series = press_series(given)
-        if told:
-            return [one.change for one in series]
-        return [([c.press.load for c in one.conditions], one.each) for one in series]
+            baseline="elastic-plastic", parts=False, rig=SimpleNamespace(of=second or {}),
+            bench=Bench(),
+        )  # fmt: skip
+        found = presses_of(given)
+        return [c.change for c in found] if told else [c.condition.press.load for c in found]
 
     return loads
 
 
-def test_a_series_has_four_loads_three_times_each_where_they_are_half_apart(pressed_set) -> None:
-    assert pressed_set(100.0, 800.0) == [([100.0, 200.0, 400.0, 800.0], 3)]
+def test_presses_have_four_loads_where_they_are_half_apart(pressed_set) -> None:
+    assert pressed_set(100.0, 800.0) == [100.0, 200.0, 400.0, 800.0]
     # from half the load on where there is one
-    assert pressed_set(100.0, 151.0)[0][0] == pytest.approx([100.0, 110.0, 130.0, 150.0])
-    assert pressed_set(100.0, 149.0)[0][0] == [50.0, 150.0]
+    assert pressed_set(100.0, 151.0) == pytest.approx([100.0, 110.0, 130.0, 150.0])
+    assert pressed_set(100.0, 149.0) == [50.0, 150.0]
 
 
 def test_a_bench_presses_with_20_to_5000_newtons_and_three_times_beyond_what_was(
     pressed_set,
 ) -> None:
-    assert pressed_set(2.0, 20000.0)[0][0] == [20.0, 130.0, 790.0, 5000.0]
-    found = pressed_set(100.0, 800.0, pressed=True)[0][0]
+    assert pressed_set(2.0, 20000.0) == [20.0, 130.0, 790.0, 5000.0]
+    found = pressed_set(100.0, 800.0, pressed=True)
     assert (found[0], found[-1]) == (33.0, 2400.0)
 
 
 def test_a_press_names_what_is_pressed(pressed_set) -> None:
     assert "on the same flat, each time" in pressed_set(100.0, 800.0, told=True)[0]
-    (held,) = pressed_set(100.0, 800.0, second={"target.radius_m": 0.02}, told=True)
+    held, *_ = pressed_set(100.0, 800.0, second={"target.radius_m": 0.02}, told=True)
     assert "on the same second sphere, each time" in held
 
 
 def test_a_press_is_read_to_2_and_1_per_cent_and_its_dent_lies_on_the_law_to_2(toy) -> None:
     given = SimpleNamespace(sees_dents=False)
     load = 0.005
-    depth = _press_noise(given, "permanent_depth_m", 4)
+    depth = _press_noise(given, "permanent_depth_m")
     power = OBSERVABLES["permanent_depth_m"].power
-    assert depth == pytest.approx(math.hypot(0.01, load * power))
+    assert depth == pytest.approx(math.hypot(0.02 / math.sqrt(3.0), load * power))
     power = OBSERVABLES["dent_diameter_m"].power
-    expected = math.sqrt(0.005**2 + 0.02**2 + (load * power) ** 2)
-    assert _press_noise(given, "dent_diameter_m", 4) == pytest.approx(expected)
+    expected = math.sqrt(0.01**2 / 3.0 + 0.02**2 + (load * power) ** 2)
+    assert _press_noise(given, "dent_diameter_m") == pytest.approx(expected)
     row = OBSERVABLES["dent_diameter_m"]
     none = SimpleNamespace(problem=toy.problem([0.0]))
     assert _noise(none, "dent_diameter_m") == pytest.approx(math.hypot(row.usual_noise, 0.02))
 
 
-def test_a_rival_has_a_fiftieth_and_four_are_told_apart(toy) -> None:
+def test_four_rivals_are_told_apart(toy) -> None:
     effects = [toy.Effect(f"m{k}", (0.0,)) for k in range(6)]
     ranking = toy.ranking_of(
         None, toy.fit_of([0.0]), singles=[toy.fit_of([0.0], e) for e in effects]
@@ -137,23 +138,24 @@ def test_a_rival_has_a_fiftieth_and_four_are_told_apart(toy) -> None:
         shared |= {f"m{k}": x for k, x in enumerate(p)}
         return len(rivals_of(ranking, Odds({}, shared)))
 
-    assert [count(0.5, 0.4, 0.019), count(0.5, 0.4, 0.021)] == [2, 3]
-    assert count(0.2, 0.2, 0.2, 0.2, 0.2) == 4
+    assert count(0.9, 0.1) == count(0.2, 0.2, 0.2, 0.2, 0.2) == 4
 
 
-def test_what_is_to_be_built_must_tell_twice_as_much(toy, monkeypatch) -> None:
+def test_what_tells_most_in_an_hour_comes_first(toy, monkeypatch) -> None:
     def first(more):
         worth = [
-            Proposal("shoot", 1.0, "trial", information=1.0),
-            Proposal("build", 1.0, "build", information=more),
+            Proposal("strike", 1.0, "trial", information=1.0, minutes=15.0),
+            Proposal("press", 1.0, "press", information=more, minutes=30.0),
         ]
-        monkeypatch.setattr(f"{propose.__module__}._worth_of_each", lambda *a: list(worth))
+        session = Session(information=1.0)
+        monkeypatch.setattr(f"{propose.__module__}._options", lambda s: None)
+        monkeypatch.setattr(f"{propose.__module__}._worth_of_each", lambda *a: (worth, session))
         base = toy.fit_of([0.0])
         ranking = toy.ranking_of(None, base, singles=[toy.fit_of([0.0], toy.Effect("a", (1.0,)))])
         given = Odds({}, {"baseline": 0.6, "a": 0.4})
-        return propose(None, ranking, given, None)[0].change
+        return propose(None, ranking, given, None).each[0].change
 
-    assert [first(1.9), first(2.1)] == ["shoot", "build"]
+    assert [first(1.9), first(2.1)] == ["strike", "press"]
 
 
 @pytest.mark.parametrize(("slope", "kind"), [(0.95, "noise"), (0.85, "none")])

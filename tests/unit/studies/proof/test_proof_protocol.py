@@ -242,20 +242,21 @@ def test_a_next_experiment_outside_the_rig_cannot_be_done():
     assert can("build", 2.0, "another", "build a ball like ball with a radius of 18 mm")
     assert not can("build", 2.0, "another")
     assert can("noise", 99.0)
+    assert can("weigh", 0.0)
 
 
 def test_a_press_needs_a_striker_of_the_rig_and_a_load_of_a_bench():
-    def can(least, most, striker="ball"):
-        trial = {"striker": striker, "least_load_N": least, "load_N": most, "presses": 12.0}
-        given = {"change": "press it slowly", "kind": "press", "trial": trial}
+    def can(load, striker="ball"):
+        given = {"change": "press it slowly", "kind": "press",
+                 "trial": {"striker": striker, "load_N": load, "repeats": 3.0}}  # fmt: skip
         found = case("a", "null", [], {"next_experiment": given})
         found.truth.update(strikers=["ball"])
         return score.feasible(found)
 
-    assert can(90.0, 880.0)
-    assert not can(90.0, 880.0, "another")
-    assert not can(90.0, 30e3)
-    assert not can(1.0, 880.0)
+    assert can(880.0)
+    assert not can(880.0, "another")
+    assert not can(30e3)
+    assert not can(1.0)
 
 
 def test_the_first_place_counts_if_the_truth_shows_there_nearly_most():

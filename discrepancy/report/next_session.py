@@ -1,0 +1,103 @@
+"""What to do next, and what the last session changed, in the words of an instruction."""
+
+from __future__ import annotations
+
+import math
+
+from ...core.observables import OBSERVABLES
+from ..choice.odds import OUTSIDE
+from ..experiments.proposal import Proposal
+from ..experiments.session import Outcome
+from ..findings import Verdict
+from ..rules import RULES
+from .wording import counted, explanation, joined, number_name, percent, quantity
+
+# limit: explanations whose change is told [-]: a line
+_CHANGED = 3
+
+
+def next_lines(v: Verdict) -> list[str]:
+    """Return whether to go on and with what, a line a step, then what the outcome would mean."""
+    s = v.session
+    if not s.steps and not v.proposals:
+        return []
+    told = f"{s.information:.2g} of {s.entropy:.2g} nat"
+    steps = [f"{k}. {_step(step)}" for k, step in enumerate(s.steps, start=1)]
+    meaning = [_meaning(v, one) for one in s.outcomes]
+    if s.goes_on:
+        head = f"In one session ({_time(s.minutes)} of {_time(s.length)}), which is expected to "
+        return [f"{head}bring {told} of what is open:", *steps, *meaning]
+    leads = max(v.probabilities, key=lambda name: v.probabilities[name])
+    why = f"a session of {_time(s.length)} would bring {told}" if s.steps else "it offers none"
+    head = f"Stop: no trial with this rig tells apart what is left: {why}."
+    if s.entropy < RULES.worth:
+        head = f"Stop: nothing is left to tell apart ({s.entropy:.2g} nat)."
+    if leads == OUTSIDE:
+        head += " What leads has no name, and a trial tells named explanations apart."
+    others = [p for p in v.proposals if p.kind in ("noise", "none")][:1] if not s.elsewhere else []
+    others += s.elsewhere
+    found = [head, *(f"What would help: {p.change} ({_worth(p)})." for p in others)]
+    if steps:
+        found += ["To test what leads all the same:", *steps, *meaning]
+    return found
+
+
+def _time(minutes: float) -> str:
+    return f"{minutes:.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.2g} h"
+
+
+def _step(p: Proposal) -> str:
+    often = int(p.trial.get("repeats", 1))
+    text = f"strike {counted(often, 'time')}: {p.change}" if p.kind == "trial" else p.change
+    return f"{text[0].upper()}{text[1:]} ({_time(p.minutes)})."
+
+
+def _worth(p: Proposal) -> str:
+    if math.isfinite(p.interval):
+        return f"the interval would be {p.interval:.2g} times as wide as now"
+    return f"{p.information:.2g} nat"
+
+
+def _meaning(v: Verdict, one: Outcome) -> str:
+    """What the most telling reading is under each explanation."""
+    row = OBSERVABLES.get(one.read)
+    logarithm = row is None or row.log
+    stated = v.problem.rig.of.get(one.read, 1.0)
+    unit = one.read.rpartition("_")[2] if row is None else _si(one.read)
+    cases = []
+    for name, (mean, std) in one.expected.items():
+        value = stated * math.exp(mean) if row is None else math.exp(mean) if logarithm else mean
+        wide = abs(value) * std if logarithm else std
+        cases.append(
+            f"{quantity(value, unit)} ± {quantity(wide, unit)} if {explanation(name, v.titles)}"
+        )
+    what = number_name(one.read) if row is None else row.label
+    return f"Most telling is step {one.step + 1}, {what}: {'; '.join(cases)}."
+
+
+def _si(column: str) -> str:
+    ends = {"_m_s": "m/s", "_rad_s": "rad/s", "_Ns": "N s", "_m": "m", "_s": "s", "_N": "N"}
+    return next((unit for end, unit in ends.items() if column.endswith(end)), "-")
+
+
+def change_lines(v: Verdict) -> list[str]:
+    """Return what the last session changed; nothing where there was but one."""
+    if len(v.history) < 2:
+        return []
+    before, after = v.history[-2:]
+    names = {**before.probabilities, **after.probabilities}
+    moved = {k: after.probabilities.get(k, 0.0) - before.probabilities.get(k, 0.0) for k in names}
+    most = sorted(names, key=lambda k: -abs(moved[k]))[:_CHANGED]
+    told = [
+        f"{explanation(k, v.titles)} {percent(before.probabilities.get(k, 0.0))}, now "
+        f"{percent(after.probabilities.get(k, 0.0))}"
+        for k in most
+        if abs(moved[k]) >= 0.01
+    ]
+    new = counted(after.trials - before.trials, "trial")
+    if not told:
+        return [f"Session {after.batch:g} ({new}) changed no probability by a per cent."]
+    return [f"What session {after.batch:g} ({new}) changed: {joined(told)}."]
+
+
+__all__ = ["change_lines", "next_lines"]
