@@ -17,8 +17,9 @@ from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, compared, idle, vague
-from ..told.checks import checks, outside, reason_above_one
+from ..told.checks import checks, lacks_of, outside, reason_above_one
 from ..told.effect import ATOM
+from ..told.flow import Lack
 from ..told.onset import largest_mean_pressure
 from .setup import Setup
 from .tables import EXACT, SHOWN, impact_row
@@ -65,6 +66,15 @@ class Blow:
         """How sure the last repeat's numbers are, by law; worked out when first asked for."""
         return {law.name: band_of(self.setup, law) for law in self.laws}
 
+    @cached_property
+    def lacks(self) -> dict[str, dict[str, Lack]]:
+        """What the set-up leaves open, by law and name, with the blow that it would be."""
+        return {
+            law.name: lacks_of(self.setup, law, self[law.name])
+            for law in self.laws
+            if law.name in self.sure and self[law.name].restitution > 0.0
+        }
+
     def checks(self) -> list[str]:
         """Return what speaks against the set-up by the first law, and restitutions above 1."""
         first = self.laws[0]
@@ -79,7 +89,7 @@ class Blow:
         return [
             *(line for line in outer if line),
             *([f"{unsure}: {_TOO_DEEP}"] if unsure else []),
-            *checks(self.setup, first, self[first.name]),
+            *checks(self.setup, first, self[first.name], self.lacks.get(first.name, {})),
             *self._not_by_all(),
             *(f"{name}: {reason}" for name, reason in above.items() if reason),
         ]
@@ -173,7 +183,10 @@ class Blow:
 
         def row(label: str, key: str, scale: float, unit: str) -> tuple[str, ...]:
             cells = [
-                _cell(scale * shown[law][key], scale * self._std(law, key, exact=exact))
+                _cell(
+                    scale * shown[law][key],
+                    *(scale * x for x in self._interval(law, key, exact=exact)),
+                )
                 if law in shown
                 else "unfinished" * (key == "restitution")
                 for law in self.traces
@@ -190,10 +203,14 @@ class Blow:
             values[PRESSURE] = last[law]
         return [*rows, row("largest mean pressure", PRESSURE, 1e-6, "MPa")]
 
-    def _std(self, law: str, key: str, *, exact: bool) -> float:
+    def _interval(self, law: str, key: str, *, exact: bool) -> tuple[float, float, float]:
+        """Standard deviation, and how far what is not stated may move a number up and down."""
         if exact or key in EXACT or law not in self.sure:
-            return 0.0
-        return self.bands[law].std(key)
+            return 0.0, 0.0, 0.0
+        lacks = self.lacks.get(law, {}).values() if hasattr(self[law], key) else ()
+        moved = [lack.moved(key, self[law]) for lack in lacks]
+        up, down = (sum(by) for by in zip(*moved, strict=True)) if moved else (0.0, 0.0)
+        return self.bands[law].std(key), up, down
 
     def written(self, *, exact: bool = False) -> list[dict[str, Any]]:
         """Return the rows with standard deviations, of the last repeat alone."""
@@ -286,11 +303,17 @@ def _least(key: str, largest: float) -> float:
     return max(_SHOWN_ROUND_OFF * largest, ATOM if key in _LEFT else 0.0)
 
 
-def _cell(value: float, std: float = 0.0) -> str:
+def _cell(value: float, std: float = 0.0, up: float = 0.0, down: float = 0.0) -> str:
+    """A number with its interval: what may move it by more than `std` stands on its own side."""
     # a tip that comes straight down has no tangential speed to be given back
     if math.isnan(value):
         return "none"
-    if value != 0.0 and std > RULES.sure * abs(value):
+    least = RULES.sure * abs(value)
+    if value != 0.0 and max(up, down) > max(std, least):
+        sides = (math.hypot(std, x) for x in (up, down))
+        above, below = (_number(float(f"{x:.1e}") if x > least else 0.0) for x in sides)
+        return f"{_number(value)} +{above} -{below}"
+    if value != 0.0 and std > least:
         return f"{_number(value)} ± {_number(float(f'{std:.1e}'))}"
     return _number(value)
 

@@ -37,8 +37,18 @@ class MechanismTable(_GeneratedTable):
     @classmethod
     def _as_its_source_has_it(cls, given: Any) -> Any:
         if not (given is True or isinstance(given, dict)):
-            raise ValueError("true, or a table of its numbers")
+            raise ValueError("true, false, or a table of its numbers")
         return {} if given is True else given
+
+
+class _AllTables(_GeneratedTable):
+    """Every mechanism; `false` says that one is known not to act."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _those_that_act(cls, given: Any) -> Any:
+        known = isinstance(given, dict)
+        return {k: v for k, v in given.items() if v is not False} if known else given
 
 
 def _range(one: Parameter) -> AfterValidator:
@@ -73,7 +83,7 @@ if TYPE_CHECKING:
         """`[mechanisms]`: one table a mechanism, by the names of a verdict."""
 
 else:
-    MechanismsTable = create_model("mechanisms", __base__=_GeneratedTable, **_FIELDS)
+    MechanismsTable = create_model("mechanisms", __base__=_AllTables, **_FIELDS)
 
 _TABLES: dict[str, Any] = {
     "mechanisms": MechanismsTable,

@@ -117,7 +117,7 @@ class SetupFile(Rig):
     sweep: SweepTable = SweepTable()
     """Conditions that run through values; every combination is simulated."""
     mechanisms: MechanismsTable = MechanismsTable()
-    """Physics beyond the laws, by the names of a verdict: true, or a table of its numbers."""
+    """Physics beyond the laws, by the names of a verdict: true, false or a table of numbers."""
 
     @property
     def striker(self) -> str:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,8 +25,8 @@ from ..result import Impact
 from ..scene import Scene
 from .band import last_blow, repeated
 from .effect import effect
-from .flat import bending, flat_checks
-from .flow import flow_checks
+from .flat import bending, flat_checks, with_waves
+from .flow import Lack, flow_checks, lacking
 from .onset import as_strong, effective_mass, first_yield_speed, largest_mean_pressure
 
 if TYPE_CHECKING:
@@ -45,7 +46,23 @@ _ABOVE_ONE = 1.0 + 5e-4
 _WORTH_A_LINE = 1e-3
 
 
-def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
+def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
+    """Return what the file leaves open and the table of materials, or a plate's bending, fills."""
+    scene = setup.scene(law)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        lacks = lacking(setup, scene, found)
+        waves = None
+        if setup.file.target.thickness_m and "support" not in setup.content.get("impact", {}):
+            waves = with_waves(setup, scene)
+    if waves is not None:
+        lacks["plate"] = Lack("hung freely as a wide plate", (waves,), "impact.support")
+    return {k: one for k, one in lacks.items() if all(end.outcome.completed for end in one.ends)}
+
+
+def checks(
+    setup: Setup, law: ContactLaw, found: Impact, lacks: Mapping[str, Lack] = MappingProxyType({})
+) -> list[str]:
     """Return a line for each check, by one law and its blow; none where that did not end."""
     if not found.outcome.completed:
         return []
@@ -60,8 +77,9 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
             _repeats(setup), _deep(scene, found), _onset(setup, scene, found),
-            flow_checks(setup, scene, found), _either(scene, found),
-            flat_checks(setup, scene, found), _walls(scene, found), _gravity(setup, scene, found),
+            flow_checks(setup, scene, found, lacks), _either(scene, found),
+            flat_checks(setup, scene, found, lacks), _walls(scene, found),
+            _gravity(setup, scene, found),
             _friction(setup, scene, found), _rod(scene, found),
             _two_radii(setup), _edge(setup, scene, found),
             _second(setup, scene, found), _bodies(setup, law),

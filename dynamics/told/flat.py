@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from ..scene import Scene
 from ..support import plate_support
 from .band import repeated
 from .effect import ATOM, effect
+from .flow import Lack
 from .onset import effective_mass
 
 if TYPE_CHECKING:
@@ -27,12 +28,14 @@ _THICK = 8.0
 _SMALL = 0.5
 
 
-def flat_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+def flat_checks(
+    setup: Setup, scene: Scene, found: Impact, lacks: Mapping[str, Lack]
+) -> Iterator[str]:
     """Yield what is to be said of the flat of a blow."""
     yield from _plate(setup, scene, found)
     yield from bending(setup, scene, found)
     yield from _struck_rod(setup, scene, found)
-    yield from _waves(setup, scene, found)
+    yield from _waves(setup, scene, found, lacks)
 
 
 def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
@@ -103,20 +106,26 @@ def _struck_rod(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     )
 
 
-def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    """What waves into the flat would do: a plate of its thickness, else a half-space."""
+def with_waves(setup: Setup, scene: Scene) -> Impact | None:
+    """The blow with waves into a plate of the flat's thickness, else a half-space."""
     flat, support = scene.pair.flat, setup.file.impact.support
     asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
     other = support not in ("rigid", "plate") or setup.second is not None
     if asked or other or flat.rigid or math.isnan(flat.density):
-        return
+        return None
     # Zener's plate is the thin one; this one has its thickness
     without = scene.with_(support=replace(scene.support, plate_mobility=0.0))
     thick = Surroundings(thickness=value_of(setup.file.target.thickness_m))
-    waves = HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick)
-    told = effect(repeated(setup, waves), found)
-    if support == "plate":
-        yield f"with waves across its thickness too (mechanisms.half-space-waves): {told}"
-    else:
-        plate = thick.thickness > 0.0
-        yield f"{'hung freely as a wide plate' if plate else 'waves into a deep flat'}: {told}"
+    return repeated(setup, HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick))
+
+
+def _waves(setup: Setup, scene: Scene, found: Impact, lacks: Mapping[str, Lack]) -> Iterator[str]:
+    if "plate" in lacks:
+        yield lacks["plate"].told(found)
+    elif (waves := with_waves(setup, scene)) is not None:
+        where = "waves into a deep flat"
+        if setup.file.impact.support == "plate":
+            where = "with waves across its thickness too (mechanisms.half-space-waves)"
+        elif setup.file.target.thickness_m:
+            where = "hung freely as a wide plate"
+        yield f"{where}: {effect(waves, found)}"

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...core.inputs.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
 from ...models.choose import follows_flow
 from ...models.hardening import REPRESENTATIVE
 from ..mechanisms.around import weaker_table
+from ..mechanisms.strength.flow_stress import RATE
 from ..mechanisms.strength.strain_rate_hardening import REFERENCE_RATE
 from ..result import Impact
 from ..scene import Scene
@@ -25,35 +26,68 @@ from .onset import first_yield_speed
 if TYPE_CHECKING:
     from ..files.setup import Setup
 
-from ..mechanisms.strength.flow_stress import RATE
+
+class Lack(NamedTuple):
+    """What a file does not say, by how it would change the blow."""
+
+    whose: str  # metal whose constants stand for the file's, or what would be
+    ends: tuple[Impact, ...]  # the blow with the least and the most of it
+    state: str  # what a file says of it
+
+    def moved(self, name: str, found: Impact) -> tuple[float, float]:
+        """Return how far one number goes up and down, 0 where it does not."""
+        by = [float(getattr(end, name)) - float(getattr(found, name)) for end in self.ends]
+        return max(0.0, *by), max(0.0, *(-x for x in by))
+
+    def told(self, found: Impact) -> str:
+        """Say the change, and what to state in its place."""
+        changes = " to ".join(effect(end, found) for end in self.ends)
+        return f"{self.whose}: {changes}; state {self.state}"
 
 
-def flow_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    """Yield the strain rate, and what rate and hardening would change where none is asked for."""
+def lacking(setup: Setup, scene: Scene, found: Impact) -> dict[str, Lack]:
+    """Return what rate and hardening would change of a blow whose file says nothing of them."""
+    radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
+        return {}
+    body = setup.file.bodies[weaker_table(setup.file, setup.striker)]
+    said = setup.content.get("mechanisms", {})
+    follows = follows_flow(scene.law) and not scene.pair.perfectly_plastic
+    wanted = {
+        "rate": ("strain-rate-hardening", "mechanisms.strain-rate-hardening (false: none)"),
+        **({} if follows else {"hardening": ("work-hardening", "a flow curve or hardening")}),
+    }
+    lacks = {
+        what: _range_of(what, mechanism, state, setup, scene, found, body)
+        for what, (mechanism, state) in wanted.items()
+        if mechanism not in said
+    }
+    return {what: lack for what, lack in lacks.items() if lack is not None}
+
+
+def flow_checks(
+    setup: Setup, scene: Scene, found: Impact, lacks: Mapping[str, Lack]
+) -> Iterator[str]:
+    """Yield the strain rate, and what rate and hardening would change where none is stated."""
     radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
         return
-    rate = RATE * scene.approach.speed / radius
-    asked = {m.name for m in setup.asked.mechanisms}
-    body = setup.file.bodies[weaker_table(setup.file, setup.striker)]
-    if "strain-rate-hardening" in asked:
-        yield f"strain rate about {rate:.2g} 1/s"
+    rate = f"strain rate about {RATE * scene.approach.speed / radius:.2g} 1/s"
+    if "strain-rate-hardening" in setup.content.get("mechanisms", {}):
+        yield rate
     else:
-        told = _range_of("rate", "strain-rate-hardening", setup, scene, found, body)
+        told = f"; {lacks['rate'].told(found)}" if "rate" in lacks else ""
         yield (
-            f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
-            f"rate adds up to there{told and f'; {told}'}"
+            f"{rate}: a strength measured slowly lacks what the metal's rate adds up to there{told}"
         )
-    follows = follows_flow(scene.law) and not scene.pair.perfectly_plastic
-    if not (follows or "work-hardening" in asked):
-        told = _range_of("hardening", "work-hardening", setup, scene, found, body)
-        if told:
-            yield f"no hardening is stated; {told}"
+    if "hardening" in lacks:
+        yield f"no hardening is stated; {lacks['hardening'].told(found)}"
 
 
 def _range_of(
-    what: str, mechanism: str, setup: Setup, scene: Scene, found: Impact, body: BodyTable
-) -> str:
+    what: str, mechanism: str, state: str, setup: Setup, scene: Scene, found: Impact,
+    body: BodyTable,
+) -> Lack | None:  # fmt: skip
     """The effect by the metal's own constants, or the least and the most of its class."""
     named = materials().get(body.material)
     own = named is not None and what in named.laws
@@ -64,16 +98,14 @@ def _range_of(
     numbers = (_numbers(e, what, S, strain) for e in chosen)
     sizes = sorted(numbers, key=lambda one: next(iter(one.values())))
     if not sizes:
-        return ""
+        return None
     ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
-    told = [
-        effect(last_blow(setup.with_mechanism(mechanism, one), scene.law), found) for one in ends
-    ]
+    blows = tuple(last_blow(setup.with_mechanism(mechanism, one), scene.law) for one in ends)
     kind = chosen[0].kind
     same = named is not None and named.kind == kind
     others = "others of its kind" if same else "the nearest in the table"
     whose = body.material if own else f"{others} ({kind}, {len(sizes)})"
-    return f"with that of {whose}: {' to '.join(told)}"
+    return Lack(f"with that of {whose}", blows, state)
 
 
 def _class_of(body: BodyTable, what: str) -> list[Entry]:

@@ -100,10 +100,42 @@ def test_first_yield_by_hand_whatever_yields(ball, flat, radius):
     assert first_yield_speed(scene) == pytest.approx(math.sqrt(2.0 * work / mass), rel=1e-6)
 
 
+def test_an_interval_holds_what_the_file_does_not_say():
+    """By brass's constants of Johnson and Cook, then with them stated; the plate by its support."""
+    text = """
+[target]
+material = "brass-cartridge-annealed"
+thickness_m = 0.01
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+material = "steel-52100-hardened"
+[impact]
+impact_speed_m_s = 3.0
+"""
+    more = ('support = "rigid"\n', "[mechanisms]\nstrain-rate-hardening = false\n",
+            "work-hardening = { hardening_ratio = 4.5, hardening_exponent = 0.42 }\n")  # fmt: skip
+    ups, downs = [], []
+    for k in range(4):
+        setup = setup_of(tomllib.loads(text + "".join(more[:k])), source="a file")
+        blow = blow_of(setup, [LAWS["fitted"]])
+        lacks = blow.lacks["fitted"]
+        std, up, down = blow._interval("fitted", "restitution", exact=False)
+        (cell,) = (cells[0] for name, *cells in blow.table() if name == "restitution")
+        assert ("±" in cell) == (max(up, down) <= std)
+        for lack in lacks.values():
+            values = [end.restitution - blow["fitted"].restitution for end in lack.ends]
+            assert -down - 1e-12 <= min(values) <= max(values) <= up + 1e-12
+        ups.append(up)
+        downs.append(down)
+    assert ups[0] == ups[1] > ups[2] > ups[3] == 0.0
+    assert downs[0] > 0.03 > downs[1] == downs[3] == 0.0
+
+
 def test_a_law_that_cannot_lose_has_no_band_of_restitution(brass):
     blow = blow_of(brass.setup, [LAWS["hertz"]])
     cells = {row[0]: row[1] for row in blow.table()}
-    assert cells["restitution"] == "1"
+    assert cells["restitution"] == "1 +0 -0.32"  # where nothing backs the plate of 10 mm
     assert "±" in cells["peak force [kN]"]
     assert blow.bands["hertz"].std("restitution") < 1e-6
     assert brass.bands["fitted"].std("restitution") > 0.0
