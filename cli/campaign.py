@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.output import in_use
 from ..core.processes.stopping import STOPS, stopped
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
@@ -73,7 +74,7 @@ def run(
     busy = f" ({slower:.1f} times slower than measured: busy, or slow)" if slower > 1.5 else ""
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
-        f"{len(todo)} to compute on {executor.workers} workers; about "
+        f"{_why(before, out)}{len(todo)} to compute on {executor.workers} workers; about "
         f"{duration(forecast.left_s())} here{busy}. Results go to {out}. Ctrl-C stops, the same "
         "command goes on."
     )
@@ -88,7 +89,12 @@ def run(
                 progress.console.print(f"{_so_far(step.status)}: {picture}")
 
     try:
-        with progress:
+        with in_use(out / "cases") as shared, progress:
+            if shared and share.of == 1:
+                progress.console.print(
+                    "another run computes here: a case may be computed twice; `--part 1/2` and "
+                    "`--part 2/2` share them", highlight=False,
+                )  # fmt: skip
             after = run_design(
                 chosen,
                 out,
@@ -106,6 +112,11 @@ def run(
         return code
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
+
+
+def _why(counts: Any, out: Path) -> str:
+    """Where the reasons of failed cases stand."""
+    return f"why: `dentscope campaign status --out {out}`, " if counts.failed else ""
 
 
 def _share(part: str) -> Any:
@@ -207,8 +218,8 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
     from ..campaigns import Store, distinct_cases, largest_difference, read_published
 
     typer.echo(
-        f"{after.done} done, {after.failed} failed, {after.missing} missing of {after.designed}; "
-        f"{duration(wall_s)}, {cpu_s:.0f} processor seconds"
+        f"{after.done} done, {after.failed} failed, {_why(after, out)}{after.missing} missing of "
+        f"{after.designed}; {duration(wall_s)}, {cpu_s:.0f} processor seconds"
     )
     if not after.done:
         return

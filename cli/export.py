@@ -74,9 +74,9 @@ def export_dem(
 ) -> None:
     """Give the contact laws of other programs parameters for a pair, by speed.
 
-    LAMMPS, LIGGGHTS, YADE, MercuryDPM, MuJoCo, Drake, Chrono, Newton, and a formula of the
-    restitution. Each returns what our law returns; the table says what it misses in depth, force
-    and time.
+    LAMMPS, MuJoCo, YADE (inputs that run as they are), Drake, a table for others, and a formula of
+    the restitution. Each returns what our law returns; the table says what it misses in depth,
+    force and time.
     """
     from ..start.ball_file import read_ball
 
@@ -128,10 +128,9 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
     speeds = [row.law.speed for row in rows]
     formula = s.formula_of(law, ball.pair, mass=ball.mass, speeds=speeds)
     return {
-        **s.hysteretic_files(rows, contact),
+        "yade_drop.py": s.yade_script(rows, contact),
         **s.mujoco_files(rows, contact),
         "drake.py": s.drake_lines(rows, contact),
-        "chrono.txt": s.chrono_lines(rows, contact),
         "formula.txt": s.formula_lines(formula),
     }
 

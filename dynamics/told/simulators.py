@@ -1,4 +1,4 @@
-"""For MuJoCo, Drake, Chrono, Newton, YADE, LIGGGHTS and MercuryDPM, and a formula of e.
+"""For MuJoCo, Drake and YADE, and a formula of e.
 
 Each program joins the numbers of two bodies in its own way; the lines give both bodies the same, so
 that the contact has what the table says.
@@ -7,15 +7,14 @@ References
 ----------
 MuJoCo, Computation, solver parameters: with negative `solref` the acceleration of the contact is
 -stiffness r - damping v, whatever masses and `solimp` are. Drake, compliant point contact:
-k_1 k_2/(k_1 + k_2) and k x max(1 + d x', 0). Chrono, ChSystemSMC: Hooke of user coefficients,
-kn d - m gn d'. MercuryDPM, LinearPlasticViscoelasticInteraction; YADE, LudingPM: S. Luding,
-Granular Matter 10 (2008) 235, Eqs. 6 to 8.
+k_1 k_2/(k_1 + k_2) and k x max(1 + d x', 0). YADE, LudingPM: S. Luding, Granular Matter 10 (2008)
+235, Eqs. 6 to 8; its `reduced` numbers are those of two like bodies.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -108,32 +107,19 @@ def drake_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """Python for Drake's point contact, of both bodies."""
     mu = f"CoulombFriction({contact.friction:g}, {contact.friction:g})"
 
-    def line(s: Substitute) -> str:
+    lines = ["# pydrake.geometry; the same properties for both bodies."]
+    for row in rows:
+        s = row.named(HUNT.name)
+        if s is None:
+            lines.append(f"# {row.without(HUNT.name)}")
+            continue
         # two bodies in series halve the stiffness, and keep one dissipation
-        return (
+        lines += [
+            f"# {_told(row, s)}",
             f"AddContactMaterial(dissipation={s.damping:.6e}, point_stiffness="
-            f"{2.0 * s.stiffness:.6e}, friction={mu}, properties=props)"
-        )
-
-    return _each(rows, HUNT.name, "# pydrake.geometry; the same properties for both bodies.", line)
-
-
-def chrono_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
-    """Lines for Chrono's smooth contacts, and the same numbers for Newton."""
-
-    def line(s: Substitute) -> str:
-        return (
-            f"material.SetKn({s.stiffness:.6e}); material.SetGn({s.damping / contact.mass:.6e}); "
-            f"material.SetFriction({contact.friction:g})\n"
-            f"# Newton (semi-implicit): ShapeConfig(ke={s.stiffness:.6e}, kd={s.damping:.6e}, "
-            f"mu={contact.friction:g})"
-        )
-
-    head = (
-        "# ChSystemSMC: UseMaterialProperties(false), SetContactForceModel(Hooke); the same\n"
-        "# material for both bodies."
-    )
-    return _each(rows, DASHPOT.name, head, line)
+            f"{2.0 * s.stiffness:.6e}, friction={mu}, properties=props)",
+        ]
+    return "\n".join(lines) + "\n"
 
 
 _YADE = """# `yade -n -x yade_drop.py` drops a ball on a flat; restitutions are printed.
@@ -170,45 +156,22 @@ for speed, k1, kp, PhiF, dt in BLOWS:
 """
 
 
-def hysteretic_files(rows: Sequence[ExportedRow], contact: BodiesMet) -> dict[str, str]:
-    """The linear hysteretic law (Luding): lines for MercuryDPM and LIGGGHTS, a script of YADE."""
-    blows = []
-
-    def line(s: Substitute) -> str:
-        k1, k2, depth = s.stiffness, s.unloading, s.blow.depth
-        phi = depth * (1.0 - k1 / k2) / (2.0 * contact.radius) if k2 > k1 else 0.0
-        blows.append(
-            f"    ({s.blow.speed:g}, {k1:.6e}, {k2:.6e}, {2 * phi:.6e}, "
-            f"{s.blow.time / 2000.0:.4e}),"
-        )
-        return (
-            f"k1 = {k1:.6e}; k2 = {k2:.6e}; depth_m = {depth:.6e}\n"
-            f"MercuryDPM: species->setPlasticParameters({k1:.6e}, {k2:.6e}, 0.0, {phi:.6e});\n"
-            f"LIGGGHTS hooke/hysteresis: kn2k1 = {k1 / k2:.6f}"
-        )
-
-    head = (
-        "# loading k1 and unloading k2 [N/m] that is reached at the depth, no cohesion.\n"
-        "# MercuryDPM: LinearPlasticViscoelasticFrictionSpecies.\n"
-        f"# coefficient of friction: {contact.friction:g}"
-    )
-    text = _each(rows, "linear-hysteretic", head, line)
-    told = [one for one in text.splitlines()[3:] if one.startswith("#")]
-    script = _YADE.format(
-        told="\n".join(told), blows="\n".join(blows), angle=math.atan(contact.friction),
-        R=contact.radius, density=contact.mass / (4.0 / 3.0 * math.pi * contact.radius**3),
-    )  # fmt: skip
-    return {"hysteretic.txt": text, "yade_drop.py": script}
-
-
-def _each(
-    rows: Sequence[ExportedRow], name: str, head: str, line: Callable[[Substitute], str]
-) -> str:
-    lines = [head]
+def yade_script(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
+    """A script of YADE: the linear hysteretic law (Luding), dropped at each speed."""
+    blows, told, R = [], [], contact.radius
     for row in rows:
-        s = row.named(name)
-        lines += [f"# {row.without(name)}"] if s is None else [f"# {_told(row, s)}", line(s)]
-    return "\n".join(lines) + "\n"
+        s = row.named("linear-hysteretic")
+        assert s is not None  # it takes every restitution
+        k1, k2 = s.stiffness, s.unloading
+        phi = max(s.blow.depth * (1.0 - k1 / k2) / R, 0.0)
+        told.append(f"# {_told(row, s)}")
+        blows.append(
+            f"    ({row.law.speed:g}, {k1:.6e}, {k2:.6e}, {phi:.6e}, {s.blow.time / 2000.0:.4e}),"
+        )
+    return _YADE.format(
+        told="\n".join(told), blows="\n".join(blows), angle=math.atan(contact.friction), R=R,
+        density=contact.mass / (4.0 / 3.0 * math.pi * R**3),
+    )  # fmt: skip
 
 
 def _told(row: ExportedRow, s: Substitute) -> str:

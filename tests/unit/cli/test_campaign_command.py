@@ -7,6 +7,7 @@ from dentscope.campaigns import DESIGNS, Design, Store, standard_case
 from dentscope.campaigns.run import Status, Step
 from dentscope.cli import run
 from dentscope.core import COMPLETED, Material, Pair
+from dentscope.core.output import in_use
 from dentscope.fem import Counters, Curve, Solution
 
 
@@ -60,8 +61,11 @@ def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(campaigns, "run_design", stop)
-    assert run(["campaign", "run", "--design", "small", "--out", str(folder)]) == 130
+    with in_use(folder / "cases") as shared:
+        assert not shared
+        assert run(["campaign", "run", "--design", "small", "--out", str(folder)]) == 130
     shown = " ".join(capsys.readouterr().out.split())
+    assert "another run computes here: a case may be computed twice; `--part 1/2`" in shown
     assert "2 cases, 1 done, 0 failed, 1 to compute" in shown
     assert "stopped; the same command goes on from here 1 done, 0 failed, 1 missing of 2" in shown
     assert (folder / "pictures" / "curves.png").exists()
@@ -82,6 +86,7 @@ def test_pictures_come_with_the_first_and_the_third_case(stored, monkeypatch, ca
     monkeypatch.setattr(campaigns, "run_design", three)
     run(["campaign", "run", "--design", "small", "--out", str(folder)])
     shown = " ".join(capsys.readouterr().out.split())
+    assert "another run" not in shown
     assert "picture of the first case, of 9:" in shown
     assert "picture of 2 cases" not in shown
     assert "picture of 3 cases, of 9:" in shown
