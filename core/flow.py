@@ -19,6 +19,9 @@ from .arrays import Array
 from .errors import InputError
 from .rules import RULES
 
+# limit: last plastic strain of a written law's table [-]; beyond every strain in a contact
+FLOW_LAST = 10.0
+
 
 @dataclass(frozen=True, slots=True)
 class FlowCurve:
@@ -150,7 +153,7 @@ def voce(*, Sy: float, Q: float, b: float) -> FlowCurve:
 def _written(
     stress: Callable[[Array], Array], slope: Callable[[Array], Array], *, first: float
 ) -> FlowCurve:
-    strain = np.append(0.0, np.geomspace(RULES.flow_first, RULES.flow_last, RULES.flow_rows))
+    strain = np.append(0.0, np.geomspace(RULES.flow_first, FLOW_LAST, RULES.flow_rows))
     values = stress(strain)
     slopes = np.append(first, slope(strain[1:]))
     return FlowCurve(*(tuple(x.tolist()) for x in (strain, values, slopes)))

@@ -24,6 +24,7 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .flow import FLOW_LAST
 from .inputs.materials import Mistyped, filled
 from .inputs.names import FileName
 from .inputs.rig_numbers import RigNumbers, most_inertia, solid_inertia
@@ -123,7 +124,7 @@ def _between(low: float, high: float, **units: float) -> AfterValidator:
 
 STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
 """Of any stress at which a metal flows [Pa]."""
-STRAINS = _range(0.0, RULES.flow_last, **{"%": 1e-2})
+STRAINS = _range(0.0, FLOW_LAST, **{"%": 1e-2})
 """Of plastic strains."""
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]

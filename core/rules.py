@@ -59,10 +59,6 @@ class CoreRules:
         1e-6, "first plastic strain of a written law's table [-]",
         "a hundredth of what a test shows",
     )  # fmt: skip
-    flow_last: float = rule(
-        10.0, "its last plastic strain [-]",
-        "beyond every strain in a contact",
-    )  # fmt: skip
     flow_rows: int = rule(
         200, "its rows [-]",
         "28 a decade",

@@ -19,7 +19,9 @@ from .comparison.forward import Point, Simulator
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.linear import Linear
-from .rules import RULES
+
+# limit: probability of bands and intervals [-]; usual
+LEVEL = 0.90
 
 # limit: rows of a correction that are shown [-]: half a screen
 _CORRECTIONS_SHOWN = 12
@@ -69,7 +71,7 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
     mean, cov = widened(problem, base).unknowns(base.residual)
     mean, cov = mean[k:], cov[k:, k:]
     error = problem.error
-    beyond = norm.ppf(0.5 + 0.5 * RULES.level)
+    beyond = norm.ppf(0.5 + 0.5 * LEVEL)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
     at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _CORRECTIONS_SHOWN)
     found = []

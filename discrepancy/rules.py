@@ -172,10 +172,6 @@ class DiagnosisRules:
         0.003, "relative scatter of a load where none is stated [-]",
         "half of class 1 of ISO 7500-1",
     )  # fmt: skip
-    level: float = rule(
-        0.90, "probability of bands and intervals [-]",
-        "usual",
-    )  # fmt: skip
     trace_points: int = rule(
         200, "points of a simulated trace [-]",
         "chosen; no measurement is kept",

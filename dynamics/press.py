@@ -17,11 +17,9 @@ from ..core.arrays import Array
 from ..models.kernel import VECTOR
 from . import force as fo
 from .integrate import Settings, arrays_of
-from .rules import RULES
 from .scene import Scene
+from .tabulated.law_table import DEEPEST, SHALLOWEST
 
-_SHALLOWEST = RULES.law_shallowest
-_DEEPEST = RULES.law_deepest
 _SMOOTH = np.empty(0)
 # limit: relative step at which the depth of a load is found [-]: round-off
 _CLOSE = 1e-12
@@ -49,7 +47,7 @@ class Pressed(NamedTuple):
 def _depth(loading, par, force, factors, load):
     """Depth at which the loading carries a load, by regula falsi (Illinois) over logarithms."""
     R = force[fo.RADIUS]
-    low, high = math.log(_SHALLOWEST * R), math.log(_DEEPEST * R)
+    low, high = math.log(SHALLOWEST * R), math.log(DEEPEST * R)
     goal = math.log(load)
     at_low = math.log(max(fo.static_loading(loading, par, force, factors, math.exp(low)), 1e-300))
     at_high = math.log(fo.static_loading(loading, par, force, factors, math.exp(high)))

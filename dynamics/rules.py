@@ -15,10 +15,6 @@ class ImpactRules:
         128, "steps of a fall with drag [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    sure: float = rule(
-        1e-6, "relative standard deviation below which none is shown [-]",
-        "round-off of the slopes",
-    )  # fmt: skip
     same_strength: float = rule(
         1e-3, "difference of a stated strength from a curve's first stress that is none [-]",
         "three digits of a sheet",
@@ -50,14 +46,6 @@ class ImpactRules:
         "error of a table: of F, a and energies over their own, of residual depths over the "
         "peak [-]",
         "restitution and times come out within ten times this of the integral",
-    )  # fmt: skip
-    law_shallowest: float = rule(
-        1e-9, "least depth that is tabulated [R]",
-        "below it a law is Hertz's",
-    )  # fmt: skip
-    law_deepest: float = rule(
-        1.0, "largest depth that is tabulated [R]",
-        "beyond it a law goes on as Hertz's",
     )  # fmt: skip
     hertz_error: float = rule(
         0.003, "error of Hertz's force, which leaves out the finite depth [-]",
@@ -115,10 +103,6 @@ class ImpactRules:
     block_mass: float = rule(
         0.1, "lightest block that is taken for a half-space without a word [kg]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    damped: float = rule(
-        1e3, "m Y^2 F/d of a tip on a thin plate from which it stays there [-]",
-        "what comes back is below 1e-7 of the speed",
     )  # fmt: skip
     hottest: float = rule(
         0.95, "way from the reference temperature to melting up to which a strength is known [-]",

@@ -22,13 +22,11 @@ from typing import Any, NamedTuple
 from numba.extending import register_jitable
 from numpy import exp, log, sqrt
 
-from .rules import RULES
-
 PI = 3.141592653589793
 # limit: keeps the strengths' ratio defined when a body does not yield [-]: no effect on any real
 # pair
 TINY = 1e-9
-SHARPEST = RULES.sharpest
+SHARPEST = 20.0
 
 
 class Bodies(NamedTuple):

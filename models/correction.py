@@ -21,12 +21,11 @@ import numpy as np
 
 from ..core.arrays import Array
 from .closed_form import Bodies, Groups, PairNumbers, groups_of
-from .rules import RULES
 
 GROUPS = Groups._fields
 """The coordinates of a pair."""
 
-MOST = RULES.shift_bound
+MOST = 4.0
 """Units by which a number may be moved; its shift is bent towards this bound."""
 
 

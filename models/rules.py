@@ -11,14 +11,6 @@ from ..core.rules import rule
 class ModelRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    sharpest: float = rule(
-        20.0, "steepest taking over between two regimes [-]",
-        "over a tenth of the depth, as wide as the data can tell",
-    )  # fmt: skip
-    shift_bound: float = rule(
-        4.0, "bound of the shift of a number [units]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     mean_span: float = rule(
         3.0, "strain at the axis over the representative one [-]",
         "by the errors of pairs left out of the fit; 2.5 to 4 do as well",

@@ -19,6 +19,7 @@ from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_o
 if TYPE_CHECKING:
     from ..fem import Accuracy, ContactProblem
 
+
 Level = Literal["production", "quick", "smoke"]
 """How finely a pair is solved; smoke is coarse, for a first look."""
 
@@ -194,18 +195,18 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
 def _check_first(first: float, onset: float, last: float, *, source: str) -> None:
     """Refuse what the round-off of coordinates of the order of R would hide."""
     # loaded with the compiler of impacts, which a refused file does without
-    from ..dynamics.rules import RULES
+    from ..dynamics.tabulated.law_table import SHALLOWEST
 
-    if first >= RULES.law_shallowest:
+    if first >= SHALLOWEST:
         return
-    if 1e-2 * last < RULES.law_shallowest:
+    if 1e-2 * last < SHALLOWEST:
         raise InputError(
             f"{last:g}", source=source, key="load.max_delta_over_R",
-            allowed=f"{100.0 * RULES.law_shallowest:g} to 0.5",
+            allowed=f"{100.0 * SHALLOWEST:g} to 0.5",
         )  # fmt: skip
     raise InputError(
         f"first yield at Delta/R = {onset:.2g}", source=source, key="Sy_Pa",
-        allowed=f"a strength over E_Pa that yields at {RULES.law_shallowest / 0.3:.1g} or later",
+        allowed=f"a strength over E_Pa that yields at {SHALLOWEST / 0.3:.1g} or later",
     )  # fmt: skip
 
 

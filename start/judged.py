@@ -25,6 +25,9 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
+# limit: points of an integral of the work [-]
+_WORK_POINTS = 400
+
 # limit: plastic strain at which a curve's rise is compared [-]; what a dent of a/R = 0.5 strains
 _RISE_STRAIN = 0.1
 
@@ -154,10 +157,10 @@ def _departure(R: float, *compared: tuple[Array, Array, Array]) -> Departure:
 
 
 def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float:
-    taken = peak * np.linspace(0.0, 1.0, RULES.work_points) ** 2
-    given = left + (peak - left) * np.linspace(0.0, 1.0, RULES.work_points)
+    taken = peak * np.linspace(0.0, 1.0, _WORK_POINTS) ** 2
+    given = left + (peak - left) * np.linspace(0.0, 1.0, _WORK_POINTS)
     spent = np.trapezoid(law.loading(pair, taken), taken)
-    returned = np.trapezoid(law.unloading(pair, given, np.full(RULES.work_points, peak)), given)
+    returned = np.trapezoid(law.unloading(pair, given, np.full(_WORK_POINTS, peak)), given)
     return math.sqrt(max(float(returned / spent), 0.0))
 
 

@@ -19,10 +19,6 @@ class StartRules:
         0.1, "part of the depth below which a dent says nothing about a law [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    work_points: int = rule(
-        400, "points of an integral of the work [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     press_deeper: float = rule(
         1.25, "depth of the solve over the deepest press [-]",
         "room for a stated number that is off",

@@ -31,6 +31,7 @@ from ...models.uncertainty import METAL
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
+from ..correction import LEVEL
 from ..experiments.feasible import BENCH
 from ..inference.derivatives import form_error, measured_covariance
 from ..rules import RULES
@@ -42,7 +43,6 @@ from .next_mark import TOLD, NextMark, next_mark, with_marks
 _METAL_ROUNDS = 10
 
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
-LEVEL = RULES.level
 """Probability of the intervals."""
 RATE = dict(RULES.rate_priors)
 """Priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise): C of Johnson

@@ -12,7 +12,8 @@ from scipy.stats import norm
 
 from ...core.inputs.flow_curve import COLUMNS
 from ...core.output import csv_text, figure, write_figure, write_file
-from .estimate import LEVEL, Metal
+from ..correction import LEVEL
+from .estimate import Metal
 from .flow import REACH, STRAINS
 from .next_mark import TOLD
 

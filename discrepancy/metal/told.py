@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from .estimate import LEVEL, VAGUE, Metal
+from ..correction import LEVEL
+from .estimate import VAGUE, Metal
 from .next_mark import TOLD
 
 

@@ -15,7 +15,6 @@ from ...models.shelf import UnknownLaw
 from ...models.turned import as_made
 from ..integrate import Trace, strike, traced
 from ..result import Impact
-from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, compared, idle, vague
 from ..told.checks import checks, lacks_of, outside, reason_above_one
 from ..told.effect import ATOM
@@ -26,6 +25,9 @@ from .tables import EXACT, SHOWN, impact_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+# limit: relative standard deviation below which none is shown [-]; round-off of the slopes
+_SURE = 1e-6
 
 # limit: numbers below this part of the largest of their unit are shown as 0 [-]: round-off of the
 # integral
@@ -129,7 +131,7 @@ class Blow:
                 f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
                 f"{band.rules(name)} of the variance"
                 for name, scale, words in told
-                if band.std(name) > RULES.sure * found[name] > 0.0
+                if band.std(name) > _SURE * found[name] > 0.0
             ),
             *(
                 f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
@@ -308,7 +310,7 @@ def _cell(value: float, std: float = 0.0, up: float = 0.0, down: float = 0.0) ->
     # a tip that comes straight down has no tangential speed to be given back
     if math.isnan(value):
         return "none"
-    least = RULES.sure * abs(value)
+    least = _SURE * abs(value)
     if value != 0.0 and max(up, down) > max(std, least):
         sides = (math.hypot(std, x) for x in (up, down))
         above, below = (_number(float(f"{x:.1e}") if x > least else 0.0) for x in sides)

@@ -44,9 +44,8 @@ TABLES_KEPT = 200
 ERROR = RULES.table_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
 
-SHALLOWEST = RULES.law_shallowest
-DEEPEST = RULES.law_deepest
-"""Depths over R between which a law is tabulated, whole octaves; beyond, it goes on as Hertz's."""
+# limit: depths between which a law is tabulated, whole octaves [R]; beyond, it goes on as Hertz's
+SHALLOWEST, DEEPEST = 1e-9, 1.0
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5

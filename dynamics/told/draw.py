@@ -15,8 +15,10 @@ from ...core.observables import OBSERVABLES
 from ...core.output import figure, panels, write_figure
 from ..columns import Impacts
 from ..inverse import alpha_curve
-from ..rules import RULES
 from ..scene import Striker
+
+# limit: relative difference that is none [-]: round-off
+_NONE = 1e-6
 
 SWEPT = (
     "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", "rebound_spin_rad_s",
@@ -104,8 +106,7 @@ def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Imp
 
     def idle(axis: int) -> bool:
         return ended and all(
-            np.allclose(t, t.take([0], axis), rtol=RULES.sure, atol=0.0, equal_nan=True)
-            for t in tables
+            np.allclose(t, t.take([0], axis), rtol=_NONE, atol=0.0, equal_nan=True) for t in tables
         )
 
     return [

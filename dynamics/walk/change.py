@@ -8,7 +8,6 @@ from numba import float64, njit
 
 from .. import force as fo
 from .. import surface as su
-from ..rules import RULES
 from . import layout as at
 from .contact import kinematics, law_radius, loading_radius, penetration, place_of
 from .events import event_slope, rest_friction, rubbing, set_segment, sliding_mode
@@ -17,8 +16,11 @@ from .layout import PLAIN
 from .motion import derivative
 from .touch import grip
 
+# limit: m Y^2 F/d of a tip on a thin plate from which it stays there [-]; what comes back is
+# below 1e-7 of the speed
+_DAMPED = 1e3
+
 # fmt: off
-_DAMPED = RULES.damped
 
 
 @njit(cache=True, **PLAIN)
