@@ -27,7 +27,8 @@ from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from ..unknowns.wrong_number import wrong_factors
 
-_DRAWN_TOGETHER = 32  # dimensions
+# limit: dimensions in which noise is drawn together [-]
+_DRAWN_TOGETHER = 32
 
 
 class Settled(NamedTuple):
