@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -169,19 +168,21 @@ def _speeds(text: str) -> list[float]:
     Raises
     ------
     InputError
-        No numbers above 0.
+        No numbers that a speed may have.
     """
     import numpy as np
+
+    from ..core.rig import SPEEDS
 
     try:
         numbers = [float(x) for x in text.replace(":", ",").split(",")]
     except ValueError:
         numbers = []
-    wrong = not numbers or any(not (x > 0.0 and math.isfinite(x)) for x in numbers)
-    if wrong or (":" in text and not (len(numbers) == 2 and numbers[0] < numbers[1])):
+    pair = len(numbers) == 2 and numbers[0] < numbers[1]
+    if not numbers or any(map(SPEEDS.wanted, numbers)) or (":" in text and not pair):
         raise InputError(
             f"{text!r}", source="command line", key="--speed",
-            allowed="FIRST:LAST, the lower first, or numbers above 0 with commas [m/s]",
+            allowed="FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]",
         )  # fmt: skip
     return (
         np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist() if ":" in text else numbers

@@ -126,6 +126,8 @@ STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
 """Of any stress at which a metal flows [Pa]."""
 STRAINS = _range(0.0, FLOW_LAST, **{"%": 1e-2})
 """Of plastic strains."""
+SPEEDS = _range(1e-9, 2e4, **{"mm/s": 1e-3})
+"""Of any approach [m/s]."""
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
@@ -139,7 +141,7 @@ SeatRadius = Annotated[
 ]
 Roughness = Annotated[Quantity, _between(0.0, 1e-3, um=1e-6, nm=1e-9)]
 Mass = Annotated[Quantity, _between(1e-18, 1e6)]
-Speed = Annotated[Quantity, _between(1e-9, 2e4, **{"mm/s": 1e-3})]
+Speed = Annotated[Quantity, AfterValidator(SPEEDS)]
 Height = Annotated[Quantity, _between(1e-9, 200.0, mm=1e-3)]
 Temperature = Annotated[Quantity, _between(0.1, 1e4)]
 HeatCapacity = Annotated[Quantity, _between(10.0, 3e4, **{"J/(g K)": 1e3})]

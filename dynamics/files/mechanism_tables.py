@@ -47,8 +47,9 @@ class _AllTables(_GeneratedTable):
     @model_validator(mode="before")
     @classmethod
     def _those_that_act(cls, given: Any) -> Any:
-        known = isinstance(given, dict)
-        return {k: v for k, v in given.items() if v is not False} if known else given
+        if not isinstance(given, dict):
+            return given
+        return {k: v for k, v in given.items() if not (v is False and k in cls.model_fields)}
 
 
 def _range(one: Parameter) -> AfterValidator:

@@ -212,7 +212,10 @@ def columns_of(
     """
     if head.understood < 2:
         asked = [nearest(header) for header in head.headers if kind_of(header) is None]
-        usual = "columns such as drop height (cm), rebound height (mm), dent diameter (mm)"
+        usual = (
+            "columns such as drop height (cm), rebound height (mm), dent diameter (mm), or "
+            "--column 'HEADER=rebound height mm'"
+        )
         raise InputError(
             "no row of headers is understood", source=source,
             allowed="; ".join([usual, *filter(None, asked)][:4]),

@@ -87,7 +87,7 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
     assert by_speed[0] > by_speed[1]
     lines = (out / "lammps.in").read_text()
     assert len(laws_of(lines, "flat")) == len(laws_of(lines, "balls")) == 2
-    for line in (["--speed", "10:1"], ["--speed", "fast"], ["--mass", "-1"], ["--mass", "nan"]):
+    for line in (["--speed", "10:1"], ["--speed", "1e5"], ["--mass", "-1"], ["--mass", "nan"]):
         assert run(["export", "dem", str(file), *line]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
 
