@@ -139,7 +139,8 @@ def second_sphere_mistakes(
     for name, table in strikers.items() if two else ():
         key = f"strikers.{name}"
         wrong += [
-            (table.shape == "rod", f"{key}.shape", "a rod on a sphere", '"sphere"'),
+            (table.shape == "rod", f"{key}.shape", "a rod on a sphere",
+             '"sphere"; a ball on the end of a rod: impact.support = "rod"'),
             (table.tip_flat_radius_m is not None, f"{key}.tip_flat_radius_m", "on a sphere",
              "on a flat"),
             (table.inertia_kg_m2 is not None, f"{key}.inertia_kg_m2", "with a second sphere",

@@ -33,6 +33,7 @@ from ..columns import Impacts
 from ..integrate import Settings
 from ..mechanisms.asked import Asked
 from ..result import Impact
+from ..rules import RULES
 from ..scene import Scene
 from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
 from .scenes import curves_in, scene_in
@@ -224,7 +225,19 @@ class Setup:
                 f"none of {', '.join(law.name for law in laws)} follows it", source=self.source,
                 key=curves[0], allowed=f"{FOLLOWING} or a law.json among the laws",
             )  # fmt: skip
+        self._check_weight(self.plain(laws[0]))
         self._check_mechanisms(laws)
+
+    def _check_weight(self, scene: Scene) -> None:
+        """Refuse a speed that is round-off beside what the weight alone does (Hertz)."""
+        E, R, weight = scene.pair.E_reduced, scene.pair.R, scene.striker.mass * scene.gravity
+        pressed = (0.75 * weight / (E * math.sqrt(R))) ** (2.0 / 3.0)
+        if scene.approach.speed**2 < RULES.put_down * scene.gravity * pressed:
+            raise InputError(
+                f"{scene.approach.speed:.3g} m/s is no blow: the weight alone presses the tip "
+                f"{pressed:.2g} m in", source=self.source, key="impact.impact_speed_m_s",
+                allowed="more, or gravity_m_s2 = 0",
+            )  # fmt: skip
 
     def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
         asked = self.asked

@@ -256,7 +256,10 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     kept = 1.0 - found.energetic_restitution**2
     lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
     if not math.isfinite(pair.Sy_min):
-        return _Sizes(RULES.hertz_error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
+        x = math.sqrt(max(found.peak_depth_m, 0.0) / pair.R)
+        first, second = RULES.hertz_sphere
+        error = RULES.hertz_error + pair.elastic_share * x * (first + second * x)
+        return _Sizes(error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     known = error_of(law, pair, np.array([found.peak_depth_m]))
     force, radius, dent, back = (
         min(float(np.nan_to_num(x[0], nan=_LARGEST_ERROR)), _LARGEST_ERROR)

@@ -1,4 +1,4 @@
-"""What is said of a flat: a plate's thickness, how it bends, a struck rod, waves that run off."""
+"""What is said of a flat and of a rod: thickness, how either bends, waves that run off."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ...core.material import Material
 from ...core.rig import value_of
 from ..mechanisms.base import Surroundings
 from ..mechanisms.half_space_waves import HalfSpaceWaves
@@ -34,6 +35,7 @@ def flat_checks(
     """Yield what is to be said of the flat of a blow."""
     yield from _plate(setup, scene, found)
     yield from bending(setup, scene, found)
+    yield from _rod_bending(scene, found)
     yield from _struck_rod(setup, scene, found)
     yield from _waves(setup, scene, found, lacks)
 
@@ -87,11 +89,29 @@ def bending(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     turns = math.log(8.0 * c * found.loading_time_s / r**2) - 1.83
     stress = 6.0 / h**2 * (1.0 + flat.nu) * found.peak_force_N / (8.0 * math.pi) * turns
     if stress > 0.0:
-        over = f", more than its strength, {flat.Sy / 1e6:.3g} MPa: it bends for good or breaks"
-        yield (
-            f"the plate's lower face is bent by some {stress / 1e6:.2g} MPa"
-            f"{over * (stress > flat.Sy)}"
-        )
+        yield f"the plate's lower face is bent by some {stress / 1e6:.2g} MPa{_over(stress, flat)}"
+
+
+def _rod_bending(scene: Scene, found: Impact) -> Iterator[str]:
+    """Yield the stress that bends a leaning rod, beside its strength.
+
+    By a force F across its end for a time T: 4/27 F L of a rigid rod, at most 0.53 F (a T)^(1/2)
+    before a wave is along it (a half-sine on a free beam, by its modes), a^2 = E I/(rho A).
+    """
+    striker, rod, lean = scene.striker, scene.pair.sphere, scene.approach.angle
+    if striker.length == 0.0 or rod.rigid or math.isnan(rod.density) or math.cos(lean) < 1e-9:
+        return
+    across = found.peak_force_N * (math.cos(lean) + scene.friction.mu * math.sin(lean))
+    a = 0.5 * striker.radius * math.sqrt(rod.E / rod.density)
+    arm = min(4.0 / 27.0 * striker.length, 0.53 * math.sqrt(2.0 * a * found.loading_time_s))
+    stress = 4.0 * across * arm / (math.pi * striker.radius**3)
+    yield f"the rod is bent by up to {stress / 1e6:.2g} MPa{_over(stress, rod)}"
+
+
+def _over(stress: float, body: Material) -> str:
+    if not stress > body.Sy:
+        return ""
+    return f", more than its strength, {body.Sy / 1e6:.3g} MPa: it bends for good or breaks"
 
 
 def _struck_rod(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:

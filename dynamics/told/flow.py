@@ -70,7 +70,8 @@ def flow_checks(
 ) -> Iterator[str]:
     """Yield the strain rate, and what rate and hardening would change where none is stated."""
     radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
-    if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
+    yields = found.residual_m > 0.0 and scene.approach.speed > first_yield_speed(scene)
+    if not (yields and radius > 0.0):
         return
     rate = f"strain rate about {RATE * scene.approach.speed / radius:.2g} 1/s"
     if "strain-rate-hardening" in setup.content.get("mechanisms", {}):

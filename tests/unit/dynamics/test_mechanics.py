@@ -244,6 +244,18 @@ def test_a_ball_that_its_weight_holds_stays(speed):
     assert any("it stays" in line for line in blow.checks())
 
 
+def test_a_ball_that_is_put_down_is_no_blow():
+    """Its weight, 40 mN, presses 5 mm of steel in by 24 nm: 1e-9 m/s is lost in their round-off."""
+    soft = {**STEEL, "Sy_Pa": 3e8}
+    slow, fast = (
+        setup(target=soft, law="fitted", speed=v, gravity_m_s2=9.81) for v in (1e-9, 4e-6)
+    )
+    with pytest.raises(InputError, match="no blow"):
+        slow.check_laws([LAWS["fitted"]])
+    fast.check_laws([LAWS["fitted"]])
+    assert blow_of(fast, [LAWS["fitted"]])["fitted"].restitution == pytest.approx(1.0, abs=0.02)
+
+
 def test_an_impact_that_did_not_end_has_no_numbers():
     found, _ = struck(target={**STEEL, "Sy_Pa": 3e8}, law="fitted", impact={"max_steps": 10})
     assert not found.outcome.completed
