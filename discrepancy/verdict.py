@@ -128,19 +128,23 @@ def diagnose(
     verdict = _told(asked, found, decided)
     if not history or not np.ptp(recordings.trials.sessions):
         return verdict
+    return replace(verdict, history=_history(asked, verdict, chosen, assume))
 
-    def known(session: float) -> After:
-        progress(f"what was known after session {session:g}")
-        part = recordings.take(recordings.trials.sessions <= session)
-        earlier = _explained(
-            asked, Simulator(problem_of(part, law=chosen, assume=assume)), nulls=RULES.nulls
-        )
-        odds = _decided(earlier, {}, cautious).odds
-        return After(session, len(part.trials), dict(odds.probability))
 
-    *before, last = np.unique(recordings.trials.sessions).tolist()
-    now = After(last, len(recordings.trials), verdict.probabilities)
-    return replace(verdict, history=(*map(known, before), now))
+def _history(
+    asked: _Asked, verdict: Verdict, law: LawChoice | None, assume: Sequence[str]
+) -> tuple[After, ...]:
+    """Return what was known after each session, as if it had been the last."""
+    sessions = asked.recordings.trials.sessions
+    found = []
+    for session in np.unique(sessions).tolist()[:-1]:
+        asked.progress(f"what was known after session {session:g}")
+        part = asked.recordings.take(sessions <= session)
+        simulator = Simulator(problem_of(part, law=law, assume=assume))
+        earlier = _explained(asked, simulator, nulls=RULES.nulls)
+        odds = _decided(earlier, {}, cautious=False).odds
+        found.append(After(session, len(part.trials), dict(odds.probability)))
+    return (*found, After(float(sessions.max()), len(sessions), verdict.probabilities))
 
 
 def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> _Decided:

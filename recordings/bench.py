@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _REPEATS, _SESSION = 100, 10080.0
 
 # limit: how far beyond its range a row may lie [-]: as far as trials of one setting differ
-_SETTING = 0.05
+SETTING = 1.05
 
 
 def _increasing(given: tuple[float, float]) -> tuple[float, float]:
@@ -101,7 +101,7 @@ def refuse_beyond(added: RecordingSet, rows: tuple[int, ...], problems: Problems
     for column, (span, values, unit) in known.items():
         low, high = span or (0.0, math.inf)
         for row, value, pressed in zip(rows, values, trials.pressed, strict=True):
-            inside = low * (1.0 - _SETTING) <= value <= high * (1.0 + _SETTING)
+            inside = low / SETTING <= value <= high * SETTING
             if not (inside or math.isnan(value) or (pressed and column != "load_N")):
                 problems.add(
                     f"{value:.4g} {unit} beyond the rig", row=row, column=column,

@@ -114,6 +114,13 @@ class Trials:
         """Which session each row is of, shape (n,)."""
         return np.nan_to_num(self.batch, nan=1.0)
 
+    @property
+    def entries(self) -> Mapping[str, tuple[str, ...]]:
+        """What readings may follow, n entries each: `varied`, and sessions if there were some."""
+        if not np.ptp(self.sessions):
+            return self.varied
+        return {**self.varied, "batch": tuple(f"{k:g}" for k in self.sessions)}
+
     def take(self, rows: npt.ArrayLike) -> Trials:
         """Return some of the rows: indices or a mask."""
         index = np.arange(len(self))[np.asarray(rows)]

@@ -104,6 +104,7 @@ IMPACT = (
     Use("figures", "checkout", 2),
     Use("proof run", "checkout", 2),
     Use("challenge get sets", "checkout", 2),
+    Use("challenge ask sets", "checkout", 2),
     Use("reduce table rebounds.csv --holds rebounds --value 1 --out reduced", "restitution"),
     Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4", "dentscope[video]", 2),
 )

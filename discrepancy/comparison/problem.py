@@ -277,9 +277,8 @@ def problem_of(
     laws = dict.fromkeys((c.striker for c in conditions), plain)
     rig = setup.numbers(source=recordings.name).assuming(E_Pa=ASSUMED_E, nu=ASSUMED_NU)
     problem = Problem(
-        recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR,
+        recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR, bench=setup.rig,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
-        bench=setup.rig,
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)
@@ -293,10 +292,7 @@ def problem_of(
     readings = {name: r for name, r in readings.items() if name not in again}
     trials = recordings.trials
     driven = np.where(trials.pressed, trials.load_N, approach.normal)
-    varied = dict(trials.varied)
-    if np.ptp(trials.sessions):
-        varied["batch"] = tuple(f"{k:g}" for k in trials.sessions)
-    seen = cells_of(readings, driven, trials.order, problem.conditions, varied)
+    seen = cells_of(readings, driven, trials.order, problem.conditions, trials.entries)
     if len(seen.cells) == 0:
         known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(

@@ -30,7 +30,7 @@ class Option(NamedTuple):
     proposal: Proposal
 
 
-class Outcome(NamedTuple):
+class Telling(NamedTuple):
     """What the most telling reading would mean.
 
     Parameters
@@ -73,7 +73,7 @@ class Session:
     length: float = RULES.session
     information: float = 0.0
     entropy: float = 0.0
-    outcomes: tuple[Outcome, ...] = ()
+    outcomes: tuple[Telling, ...] = ()
     elsewhere: tuple[Proposal, ...] = field(default=())
 
     @property
@@ -183,8 +183,8 @@ def session_of(
     return Session(
         tuple(options[k].proposal for k in some), cost(some), budget,
         information([s.of(cells(some)) for s in seen], weight.tolist()), entropy,
-        (Outcome(step, reads[i], expected),),
+        (Telling(step, reads[i], expected),),
     )  # fmt: skip
 
 
-__all__ = ["Option", "Outcome", "Session", "chosen", "session_of", "takes"]
+__all__ = ["Option", "Telling", "Session", "chosen", "session_of", "takes"]

@@ -7,7 +7,7 @@ import math
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE
 from ..experiments.proposal import Proposal
-from ..experiments.session import Outcome
+from ..experiments.session import Telling
 from ..findings import Verdict
 from ..rules import RULES
 from .wording import counted, explanation, joined, number_name, percent, quantity
@@ -58,7 +58,7 @@ def _worth(p: Proposal) -> str:
     return f"{p.information:.2g} nat"
 
 
-def _meaning(v: Verdict, one: Outcome) -> str:
+def _meaning(v: Verdict, one: Telling) -> str:
     """What the most telling reading is under each explanation."""
     row = OBSERVABLES.get(one.read)
     logarithm = row is None or row.log

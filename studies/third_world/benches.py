@@ -86,7 +86,7 @@ class Rig:
         return bool(np.any(self.angle < 0.499 * math.pi))
 
 
-_READ = {
+READ = {
     "restitution": (0.003, 0.006), "permanent_depth_m": (0.4e-6, 0.012),
     "dent_diameter_m": (8e-6, 0.006), "contact_time_s": (3e-7, 0.01), "peak_force_N": (4.0, 0.012),
     "rebound_spin_rad_s": (0.08, 0.008), "friction_impulse_ratio": (0.002, 0.015),
@@ -105,7 +105,7 @@ def _rig(
     ]  # fmt: skip
     which, angle, speed = (np.array(c) for c in zip(*rows, strict=True))
     fine = float(rng.uniform(0.7, 1.4))
-    noise = {k: (_READ[k][0] * fine, _READ[k][1] * fine) for k in read}
+    noise = {k: (READ[k][0] * fine, READ[k][1] * fine) for k in read}
     given = {"temperature": np.full(len(which), 293.0), "load": np.zeros(len(which))} | more
     mu = float(np.round(rng.uniform(0.1, 0.28), 2))
     return Rig(bench, flat, strikers, which.astype(np.intp), angle, speed, mu=mu, noise=noise,

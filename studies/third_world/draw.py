@@ -70,7 +70,9 @@ class Truth:
         }  # fmt: skip
 
 
-def draw(rng: np.random.Generator, kind: str, name: str) -> Truth:
+def draw(
+    rng: np.random.Generator, kind: str, name: str, *, tries: int = _RIGS * _TRIES
+) -> Truth:  # fmt: skip
     """Draw a set.
 
     Parameters
@@ -81,11 +83,13 @@ def draw(rng: np.random.Generator, kind: str, name: str) -> Truth:
         `null`, `single`, `pair` or `outside`.
     name
         Rig of a null, effect of a single or of what is outside, both of a pair with a plus.
+    tries
+        Draws of which the one nearest to a size that is seen is kept.
     """
     tried: list[tuple[float, Truth]] = []
     names = [] if kind == "null" else name.split("+")
     kinds = [(EFFECTS | OUTSIDE)[n] for n in names]
-    for turn in range(_RIGS * _TRIES if names else 1):
+    for turn in range(tries if names else 1):
         law = metal(rng)
         z = {k: float(np.clip(rng.normal(), -2.0, 2.0)) for k in TOLERANCE}
         z = z if rng.random() < 0.6 else {}

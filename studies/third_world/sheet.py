@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,13 +14,13 @@ from ..concealed import Metal
 from .benches import TOLERANCE, Rig
 from .draw import Truth, readings
 
-_RELEASE, _SPEED = 0.012, 0.003
+RELEASE, SPEED = 0.012, 0.003
 """Scatter of the release, and of the speed's reading; fractions."""
 
-_HEIGHT = 0.008
+HEIGHT = 0.008
 """Error of a height, which all its trials share, as a fraction."""
 
-_SIGNED = {"rebound_spin_rad_s", "tangential_rebound_m_s"}
+SIGNED = {"rebound_spin_rad_s", "tangential_rebound_m_s"}
 _SHAPES = ("gaussian", "laplace", "flat", "lognormal")
 
 
@@ -33,44 +34,74 @@ def write(truth: Truth, folder: Path, *, name: str) -> None:
     folder, name
         Where and under which name; neither says what it conceals.
     """
-    rng, rig = np.random.default_rng(truth.seed), truth.rig
-    n = len(rig.which)
-    if rig.heights:
-        steps, group = np.unique(rig.speed, return_inverse=True)
-        release = (1.0 + 0.5 * _HEIGHT * rng.normal(size=len(steps)))[group]
-        stated = rig.speed
-    else:
-        release = 1.0 + _RELEASE * rng.normal(size=n)
-        stated = rig.speed * release * (1.0 + _SPEED * rng.normal(size=n))
-    clean = readings(rig, truth.law, truth.z, truth.effects, release)
-    read = {k: _read(rng, rig, k, column) for k, column in clean.items()}
+    rig, n = truth.rig, len(truth.rig.which)
+    rng, settings = released(truth)
+    clean = readings(rig, truth.law, truth.z, truth.effects, settings.release)
+    read = {k: seen(*drawn(rng, rig, k, n), rig.noise[k], column) for k, column in clean.items()}
+    read = {k: x if k in SIGNED else np.where(x > 0.0, x, np.nan) for k, x in read.items()}
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "set.toml").write_text(_sheet(rig, name), encoding="utf-8")
     if rig.curve is not None:
         rows = [f"{e:.5g},{s * rig.flat.Sy:.6g}" for e, s in rig.curve.T]
         text = "\n".join(["plastic_strain,true_stress_Pa", *rows]) + "\n"
         (folder / "curve.csv").write_text(text, encoding="utf-8")
-    _trials(rig, folder / "trials.csv", stated, read, _order(truth, rng))
+    tested = np.argsort(_order(truth, rng))
+    with (folder / "trials.csv").open("w", newline="", encoding="utf-8") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(
+            table(rig, settings.stated, read, tested, first=1)
+        )
 
 
-def _read(rng: np.random.Generator, rig: Rig, name: str, column: Array) -> Array:
-    """Readings with noise of some shape, a gauge's error, outliers and empty cells."""
-    n = len(column)
-    number, fraction = rig.noise[name]
+class Settings(NamedTuple):
+    """Factor on each trial's speed, and the speed that is stated, (n,) each."""
+
+    release: Array
+    stated: Array
+
+
+class Instrument(NamedTuple):
+    """What reads a column: shape of its noise, that over what is stated, scale."""
+
+    shape: str
+    spread: float
+    scale: float
+
+
+def released(truth: Truth) -> tuple[np.random.Generator, Settings]:
+    """Return how the trials of a set were released, and what draws its readings after that."""
+    rng, rig = np.random.default_rng(truth.seed), truth.rig
+    n = len(rig.which)
+    if rig.heights:
+        steps, group = np.unique(rig.speed, return_inverse=True)
+        return rng, Settings((1.0 + 0.5 * HEIGHT * rng.normal(size=len(steps)))[group], rig.speed)
+    release = 1.0 + RELEASE * rng.normal(size=n)
+    return rng, Settings(release, rig.speed * release * (1.0 + SPEED * rng.normal(size=n)))
+
+
+def drawn(rng: np.random.Generator, rig: Rig, name: str, n: int) -> tuple[Instrument, Array]:
+    """Return a column's instrument and its noise (n,): of some shape, wild ones, NaN where lost."""
     shape = str(rng.choice(_SHAPES))
-    noise = {
-        "gaussian": rng.normal(size=n), "laplace": rng.laplace(size=n) / math.sqrt(2.0),
-        "flat": rng.uniform(-math.sqrt(3.0), math.sqrt(3.0), n),
-        "lognormal": (np.exp(0.5 * rng.normal(size=n)) - math.exp(0.125)) / 0.604,
-    }[shape]  # fmt: skip
-    noise = noise * rng.uniform(0.85, 1.15)  # a stated noise is an estimate
+    noise = noise_of(rng, n)[shape]
+    spread = float(rng.uniform(0.85, 1.15))  # a stated noise is an estimate
+    noise = noise * spread
     wild = rng.random(n) < 0.01
     noise = np.where(wild, noise + rng.choice([-1.0, 1.0], n) * rng.uniform(5.0, 9.0, n), noise)
     scale = 1.0 + rig.gauge.get(name, 0.0) * float(np.clip(rng.normal(), -2.0, 2.0))
-    value = column * scale + np.hypot(number, fraction * column) * noise
-    if name not in _SIGNED:
-        value = np.where(value > 0.0, value, np.nan)
-    return np.where(rng.random(n) < 0.02, np.nan, value)
+    return Instrument(shape, spread, scale), np.where(rng.random(n) < 0.02, np.nan, noise)
+
+
+def noise_of(rng: np.random.Generator, n: int) -> dict[str, Array]:
+    """Noise (n,) of every shape, of unit deviation."""
+    return {
+        "gaussian": rng.normal(size=n), "laplace": rng.laplace(size=n) / math.sqrt(2.0),
+        "flat": rng.uniform(-math.sqrt(3.0), math.sqrt(3.0), n),
+        "lognormal": (np.exp(0.5 * rng.normal(size=n)) - math.exp(0.125)) / 0.604,
+    }  # fmt: skip
+
+
+def seen(by: Instrument, noise: Array, error: tuple[float, float], column: Array) -> Array:
+    """Return what is read of a column (n,), with its error as stated: a number and a fraction."""
+    return np.asarray(column * by.scale + np.hypot(error[0], error[1] * column) * noise)
 
 
 def _order(truth: Truth, rng: np.random.Generator) -> Indices:
@@ -83,31 +114,43 @@ def _order(truth: Truth, rng: np.random.Generator) -> Indices:
     return rng.permutation(len(truth.rig.which))
 
 
-def _trials(rig: Rig, path: Path, speed: Array, read: dict[str, Array], order: Indices) -> None:
+def table(
+    rig: Rig, speed: Array, read: dict[str, Array], rows: Indices, *, first: int
+) -> list[list[str]]:
+    """Return trials.csv with its header.
+
+    Parameters
+    ----------
+    rig
+        Its settings, n of them.
+    speed, read
+        (n,) as stated, and as read by column.
+    rows
+        Which, in the order of testing.
+    first
+        Number of the first.
+    """
     pressed, hot = bool(np.any(rig.load > 0.0)), bool(np.ptp(rig.temperature) > 0.0)
     aslant = rig.oblique and not rig.rods
     head = ["trial", "striker", "angle_deg", "order"]
     head += ["angle_deg_std"] * rig.rods + ["drop_height_m", "drop_height_m_std"] * rig.heights
     head += ["impact_speed_m_s"] * (not rig.heights) + ["approach_tangential_m_s"] * aslant
     head += ["temperature_K"] * hot + ["load_N"] * pressed + list(read)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(head)
-        for place, i in enumerate(np.argsort(order)):
-            v, press = float(speed[i]), rig.load[i] > 0.0
-            cells = [f"t{place + 1:03d}", rig.strikers[rig.which[i]].name,
-                     f"{math.degrees(rig.angle[i]):g}", str(place + 1)]  # fmt: skip
-            cells += [f"{math.degrees(TOLERANCE['angle']):.3g}"] * rig.rods
-            height = v * v / (2.0 * 9.81)
-            if rig.heights:
-                cells += [f"{height:.5g}", f"{_HEIGHT * height:.3g}"]
-            else:
-                cells.append("" if press else f"{v:.6g}")
-            cells += [f"{-v / math.tan(rig.angle[i]):.6g}"] * aslant
-            cells += [f"{rig.temperature[i]:g}"] * hot
-            cells += [f"{rig.load[i]:g}" if press else ""] * pressed
-            cells += ["" if np.isnan(c[i]) else f"{c[i]:.6g}" for c in read.values()]
-            writer.writerow(cells)
+    found = [head]
+    for place, i in enumerate(rows, start=first):
+        v, press = float(speed[i]), rig.load[i] > 0.0
+        cells = [f"t{place:03d}", rig.strikers[rig.which[i]].name,
+                 f"{math.degrees(rig.angle[i]):g}", str(place)]  # fmt: skip
+        cells += [f"{math.degrees(TOLERANCE['angle']):.3g}"] * rig.rods
+        height = v * v / (2.0 * 9.81)
+        struck = [f"{height:.5g}", f"{HEIGHT * height:.3g}"] if rig.heights else [f"{v:.6g}"]
+        struck += [f"{-v / math.tan(rig.angle[i]):.6g}"] * aslant
+        cells += [""] * len(struck) if press else struck
+        cells += [f"{rig.temperature[i]:g}"] * hot
+        cells += [f"{rig.load[i]:g}" if press else ""] * pressed
+        cells += ["" if np.isnan(c[i]) else f"{c[i]:.6g}" for c in read.values()]
+        found.append(cells)
+    return found
 
 
 def _about(value: float, fraction: float) -> str:
@@ -149,7 +192,7 @@ def _sheet(rig: Rig, name: str) -> str:
         lines.append(f"{column} = {number:.4g}")
         lines += [f"{column}_relative = {fraction:.4g}"] * (fraction > 0.0)
     if not rig.heights:
-        lines.append(f"impact_speed_relative = {math.hypot(TOLERANCE['speed'], _SPEED):.4g}")
+        lines.append(f"impact_speed_relative = {math.hypot(TOLERANCE['speed'], SPEED):.4g}")
     if rig.gauge:
         lines += ["", "[gauge]", *(f"{k} = {v:g}" for k, v in rig.gauge.items())]
     return "\n".join(lines) + "\n"

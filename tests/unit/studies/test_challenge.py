@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 from dentscope import recordings
 from dentscope.cli import run
+from dentscope.core import InputErrors
 from dentscope.dynamics import mechanisms
-from dentscope.studies.challenge import answers, archive, draw, own
+from dentscope.studies.challenge import answers, archive, ask, draw, own
 from dentscope.studies.challenge.score import marks, scores
 from dentscope.studies.proof.generators.effects import EFFECTS, OUTSIDE
 from dentscope.studies.proof.generators.folder import write_set
@@ -71,7 +72,7 @@ def test_a_strangers_method_is_scored_by_the_pages_instructions(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "challenge").symlink_to(challenge)
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[0]
     (tmp_path / "method.py").write_text(code)
     runpy.run_path(str(tmp_path / "method.py"))
     assert run(["challenge", "score", "challenge/open", "answers.csv"]) == 0
@@ -226,3 +227,72 @@ def test_own_answers_are_what_was_kept(tmp_path) -> None:
     own.write_own(tmp_path, tmp_path)
     found = answers.read_answers(tmp_path / "bic.csv", ["open-001"])
     assert found == {"open-001": {"tilt": 0.75, "baseline": 0.25}}
+
+
+@pytest.fixture(scope="module")
+def game(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("asker") / "game"
+    ask.deal(folder, folder.with_name("game-judge"), 2, seed=5)
+    return folder
+
+
+def asked(game: Path, name: str, text: str) -> list[list[str]]:
+    rows = game.parent / "rows.csv"
+    rows.write_text(text)
+    return ask.ask(game, game.with_name("game-judge"), name, rows)[0]
+
+
+def test_a_random_asker_is_scored_by_the_page(game, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(game.parent)
+    code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[1]
+
+    def bought(command: list[str], *, check: bool) -> None:
+        *_, folder, name, rows = command
+        assert check
+        ask.ask(Path(folder), game.with_name("game-judge"), name, Path(rows))
+
+    monkeypatch.setattr("subprocess.run", bought)
+    exec(compile(code, "page", "exec"), {})
+    assert run(["challenge", "score", "game", "answers.csv"]) == 0
+    told = capsys.readouterr().out
+    assert re.search(r"trials bought\W+1\.000", told)
+    # all names alike before and after
+    assert re.search(r"nats a trial\W+0\.000", told)
+    found = recordings.read(game / "sets" / "asked-001").trials
+    assert (len(found), found.sessions.max()) == (25, 2.0)
+
+
+def test_what_is_answered_hangs_on_secret_and_trial_alone(game, tmp_path) -> None:
+    text = "striker,angle_deg,impact_speed_m_s\n{},{:g},{:g}\n"
+    found = recordings.read(game / "sets" / "asked-002")
+    first = found.trials
+    row = text.format(first.striker[0], first.angle_deg[0], found.approach.normal[0])
+    again = tmp_path / "game"
+    ask.deal(again, tmp_path / "game-judge", 2, seed=5)
+    asked(again, "asked-002", text.format(first.striker[-1], first.angle_deg[-1],
+                                          found.approach.normal[-1]))  # fmt: skip
+    one, two = asked(game, "asked-002", row)[1], asked(again, "asked-002", row)[1]
+    # the number of the trial apart
+    assert one[4:] == two[4:]
+    concealed = {n for pair in ask.truths(tmp_path / "game-judge").values() for n in pair}
+    texts = "".join(p.read_text() for p in (game / "sets").rglob("*.*"))
+    assert not any(name in texts for name in concealed)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("striker,impact_speed_m_s\nnobody,1\n", "no striker 'nobody'"),
+        ("striker,impact_speed_m_s\n{0},99\n", "row 2, column impact_speed_m_s: 99"),
+        ("striker,load_N\n{0},1e9\n", "column load_N"),
+        ("striker,angle_deg\n{0},90\n", "a speed or a load"),
+        ("striker,impact_speed_m_s\n" + "{0},1\n" * 11, "11 trials"),
+        ("striker,truth\n{0},1\n", "truth"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_and_not_bought(game, text, told) -> None:
+    place = game / "sets" / "asked-001"
+    before = (place / "trials.csv").read_bytes()
+    with pytest.raises(InputErrors, match=told):
+        asked(game, "asked-001", text.format(recordings.read(place).trials.striker[0]))
+    assert (place / "trials.csv").read_bytes() == before
