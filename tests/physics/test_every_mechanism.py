@@ -54,11 +54,39 @@ def blow(rng, target, shape, way):
     return second.facing(scene), Surroundings(**around, struck=second)
 
 
+def drawn_blow(rng):
+    """A scene with its surroundings, and of what kind it is."""
+    target, shape = str(rng.choice(TARGETS)), str(rng.choice(["ball", "rod"]))
+    shape = shape if target in ("flat", "plate") else "ball"
+    kind = target, shape, str(rng.choice(["upright", "oblique", "spinning"]))
+    state = rng.bit_generator.state
+    return *blow(rng, *kind), kind, state
+
+
 def read(mechanism, values, scene, around):
-    asked = Asked((mechanism,), {mechanism.name: values}, around)
-    if asked.idle([scene]):
-        return None
-    return asked.read(scene, strike(asked.attached([scene])[0]))
+    return read_all((mechanism,), {mechanism.name: values}, scene, around)
+
+
+def read_all(mechanisms, constants, scene, around):
+    asked = Asked(mechanisms, constants, around)
+    asked = asked.without(*asked.idle([scene]))
+    return asked.read(scene, strike(asked.attached([scene])[0])) if asked else None
+
+
+def ended_well(found, scene, shape, constants):
+    """Whether it ended; then energy and momentum balance, and the rebound is e v."""
+    what = shape, constants
+    if not found.outcome.completed:
+        # a rod that spins may rock for longer than it is followed; then it has no numbers
+        assert (shape, math.isnan(found.restitution)) == ("rod", True), what
+        return False
+    assert abs(found.energy_residual) < 1e-4, what
+    assert max(found.momentum_residual, found.angular_residual) < 1e-5, what
+    lost = constants.get("impact-speed-loss", {"speed_loss": 0.0})["speed_loss"]
+    if shape == "ball" and "tilt" not in constants:
+        back = found.restitution * scene.approach.speed * (1.0 - lost)
+        assert found.rebound_speed_m_s == pytest.approx(back, rel=1e-6, abs=1e-9), what
+    return True
 
 
 def drawn(mechanism, rng, scene, around):
@@ -77,28 +105,12 @@ def nearly_neutral(mechanism, values):
 def test_what_holds_of_every_blow(seed):
     rng = np.random.default_rng(seed)
     mechanism = MECHANISMS[seed % len(MECHANISMS)]
-    target, shape = str(rng.choice(TARGETS)), str(rng.choice(["ball", "rod"]))
-    shape = shape if target in ("flat", "plate") else "ball"
-    way = str(rng.choice(["upright", "oblique", "spinning"]))
-    state = rng.bit_generator.state
-    scene, around = blow(rng, target, shape, way)
+    scene, around, (target, shape, way), state = drawn_blow(rng)
     values = drawn(mechanism, rng, scene, around)
     found = read(mechanism, values, scene, around)
-    if found is None:
+    if found is None or not ended_well(found, scene, shape, {mechanism.name: values}):
         return
     what = (mechanism.name, target, shape, way, values)
-    if not found.outcome.completed:
-        # a rod that spins may rock for longer than it is followed; then it has no numbers
-        assert (shape, math.isnan(found.restitution)) == ("rod", True), what
-        return
-    assert abs(found.energy_residual) < 1e-4, what
-    assert max(found.momentum_residual, found.angular_residual) < 1e-5, what
-    arrived = scene.approach.speed
-    if mechanism.name == "impact-speed-loss":
-        arrived *= 1.0 - values["speed_loss"]
-    if shape == "ball" and mechanism.name != "tilt":
-        back = found.restitution * arrived
-        assert found.rebound_speed_m_s == pytest.approx(back, rel=1e-6, abs=1e-9), what
     # no effect
     none = read(mechanism, nearly_neutral(mechanism, values), scene, around)
     plain = strike(scene)
@@ -116,3 +128,14 @@ def test_what_holds_of_every_blow(seed):
         two = read(mechanism, values, endless, there)
         if one is not None and two is not None:
             assert two.restitution == pytest.approx(one.restitution, rel=1e-5), what
+
+
+@pytest.mark.parametrize("seed", range(DRAWS))
+def test_what_holds_of_three_mechanisms_together(seed):
+    rng = np.random.default_rng(100_000 + seed)
+    some = tuple(MECHANISMS[k] for k in sorted(rng.choice(len(MECHANISMS), 3, replace=False)))
+    scene, around, (_, shape, _), _ = drawn_blow(rng)
+    constants = {m.name: drawn(m, rng, scene, around) for m in some}
+    found = read_all(some, constants, scene, around)
+    if found is not None:
+        ended_well(found, scene, shape, constants)
