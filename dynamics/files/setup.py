@@ -232,10 +232,11 @@ class Setup:
         """Refuse a speed that is round-off beside what the weight alone does (Hertz)."""
         E, R, weight = scene.pair.E_reduced, scene.pair.R, scene.striker.mass * scene.gravity
         pressed = (0.75 * weight / (E * math.sqrt(R))) ** (2.0 / 3.0)
-        if scene.approach.speed**2 < RULES.put_down * scene.gravity * pressed:
+        slowest = min((scene.approach.speed, *self.sweep.swept.get("impact_speed_m_s", ())))
+        if slowest**2 < RULES.put_down * scene.gravity * pressed:
             raise InputError(
-                f"{scene.approach.speed:.3g} m/s is no blow: the weight alone presses the tip "
-                f"{pressed:.2g} m in", source=self.source, key="impact.impact_speed_m_s",
+                f"{slowest:.3g} m/s is no blow: the weight alone presses the tip "
+                f"{pressed:.2g} m in", source=self.source, key="impact_speed_m_s",
                 allowed="more, or gravity_m_s2 = 0",
             )  # fmt: skip
 
