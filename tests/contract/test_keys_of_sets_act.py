@@ -19,6 +19,8 @@ from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
+from dentscope.discrepancy.experiments.next_experiment import _options
+from dentscope.discrepancy.experiments.session import takes
 from dentscope.discrepancy.rank import baseline_situations
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
@@ -68,6 +70,7 @@ TRIALS_OF_A_BALL = """trial,striker,angle_deg,impact_speed_m_s,restitution,perma
 ON_A_FLAT = BALL.replace('"balls"', '"normal balls"').replace("thickness_m = 0.03\n", "")
 ON_A_BALL = ON_A_FLAT.replace("[target]", '[target]\nshape = "sphere"\nradius_m = 0.02')
 BARE = ROD.replace("Sy_Pa = { value = 3.05e8, std = 3e7 }\n", "")
+RIG = f"{ROD}[rig]\nloads_N = [20.0, 5e4]\n[rig.minutes]\nstrike = 5.0\n"
 BARE_STRIKER = ROD.replace("Sy_Pa = { value = 1.7e9, std = 1e8 }\n", "")
 
 CHANGED = {
@@ -121,6 +124,15 @@ CHANGED = {
     ("[environment]", "density_kg_m3"): (BALL, "6.0"),
     ("[environment]", "pressure_Pa"): (BALL, "5e5"),
     ("[environment]", "temperature_K"): (BALL, "330"),
+    ("[rig]", "speeds_m_s"): (RIG, "[0.1, 9.0]"),
+    ("[rig]", "angles_deg"): (RIG, "[20.0, 80.0]"),
+    ("[rig]", "loads_N"): (f"{RIG}press = 5.0\n", "[20.0, 9e3]"),
+    ("[rig]", "reads"): (RIG, '["contact_time_s"]'),
+    ("[rig]", "repeats"): (RIG, "4"),
+    ("[rig]", "session_minutes"): (RIG, "60.0"),
+    **{("[rig.minutes]", name): (RIG, "33.0")
+       for name in ("strike", "press", "change", "hardness", "weigh", "calliper", "instrument",
+                    "build")},
 }  # fmt: skip
 METAL = ("E_Pa", "nu", "Sy_Pa")
 REFUSED = {("[target]", "rigid"), ("[strikers.NAME]", "rigid")}
@@ -172,6 +184,8 @@ def told(text, folder):
                 one = Point(np.zeros(problem.n_z), {mechanism.name: middle})
                 numbers.append(simulator.predict((mechanism,), [one]))
     unsure = [(n.name, n.at(0.0), n.at(1.0)) for n in problem.nuisances]
+    able = [(o.proposal.change, o.proposal.minutes) for o in _options(simulator).options]
+    able += [(what, takes(problem.bench, what)) for what in ("change", "build")]
     cells = problem.cells
     measured = [np.asarray(x) for x in (cells.value, cells.std)]
     return (
@@ -182,6 +196,7 @@ def told(text, folder):
         str(problem.error.spreads),
         numbers,
         measured,
+        [*able, problem.bench.session_minutes],
     )
 
 
