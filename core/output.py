@@ -87,7 +87,8 @@ def write_file(path: Path, content: bytes | str) -> Path:
     InputError
         It cannot be written; what was there is unchanged.
     """
-    data = content.encode() if isinstance(content, str) else content
+    # a name that is no text in UTF-8 is no reason to fail
+    data = content.encode(errors="replace") if isinstance(content, str) else content
     try:
         _make_folder(path.parent)
         _replace(Path(os.path.realpath(path)), data)

@@ -88,7 +88,7 @@ Sy_Pa = "?"
 
 def template_text(shape: Shape, name: str) -> str:
     """Return set.toml with the values of both bodies to be filled in, and the set's name."""
-    return _HEAD.replace('"NAME"', json.dumps(name)) + _STRIKER[shape] + _TAIL
+    return _HEAD.replace('"NAME"', json.dumps(name, ensure_ascii=False)) + _STRIKER[shape] + _TAIL
 
 
 def write_template(folder: Path, *, shape: Shape) -> None:

@@ -50,10 +50,11 @@ def steady_streams() -> None:
     stream = sys.stdout
     if isinstance(stream, io.TextIOWrapper):
         buffer = io.BufferedWriter(_Output(stream.fileno()))
+        # what the terminal's encoding lacks is escaped
+        kept = "backslashreplace" if stream.errors == "strict" else stream.errors
         sys.stdout = io.TextIOWrapper(
-            buffer, encoding=stream.encoding, errors=stream.errors,
-            line_buffering=stream.line_buffering,
-        )  # fmt: skip
+            buffer, encoding=stream.encoding, errors=kept, line_buffering=stream.line_buffering
+        )
     if os.environ.get("COLUMNS", "1").strip("0 ") == "":
         del os.environ["COLUMNS"]
     if not sys.warnoptions:

@@ -57,7 +57,15 @@ def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
             waves = with_waves(setup, scene)
     if waves is not None:
         lacks["plate"] = Lack("hung freely as a wide plate", (waves,), "impact.support")
-    return {k: one for k, one in lacks.items() if all(end.outcome.completed for end in one.ends)}
+    return {
+        what: one
+        for what, one in lacks.items()
+        if all(end.outcome.completed for end in one.ends)
+        and any(
+            sum(one.moved(name, found)) > _WORTH_A_LINE * getattr(found, name)
+            for name in ("restitution", "residual_flat_m")
+        )
+    }
 
 
 def checks(

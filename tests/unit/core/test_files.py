@@ -8,6 +8,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.core import InputError
 from dentscope.core.inputs.input_file import read_bytes
+from dentscope.core.inputs.templates import template, write_new
 from dentscope.core.inputs.toml_input import read_toml
 from dentscope.core.output import locked, write_file
 from dentscope.core.processes.confined import confined
@@ -56,6 +57,12 @@ def test_what_cannot_be_written_is_a_line_and_leaves_nothing(tmp_path, name):
         write_file(tmp_path / name, "text")
     assert "\n" not in str(caught.value)
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_name_that_is_no_text_makes_a_file(tmp_path):
+    file = tmp_path / os.fsdecode(b"k\xfc.toml")
+    write_new(template("ball"), file, command="impact")
+    assert read_toml(file)["target"]
 
 
 def test_a_replaced_file_keeps_its_mode_and_a_link_its_target(tmp_path):
