@@ -42,6 +42,8 @@ _MASS_OFF = 0.01
 # limit: restitution from which it is told to be above 1 [-]; half of its last digit shown
 _ABOVE_ONE = 1.0 + 5e-4
 
+# limit: rho v^2 over strength from which inertia of the metal is told of [-]
+_DAMAGE = 1.0
 # limit: relative effect that is worth a line [-]
 _WORTH_A_LINE = 1e-3
 
@@ -162,6 +164,13 @@ def _deep(scene: Scene, found: Impact) -> Iterator[str]:
         yield (
             f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the radius: the bodies "
             "would go through each other, and no number here holds"
+        )
+    weak = scene.pair.weaker
+    damage = weak.density * scene.approach.speed**2 / weak.Sy
+    if damage > _DAMAGE:
+        yield (
+            f"rho v^2/S_y is {damage:.2g}: from 1 on the metal's own inertia counts (W. Johnson, "
+            "Impact Strength of Materials, 1972), which no contact law has"
         )
 
 

@@ -244,6 +244,18 @@ def test_a_ball_that_its_weight_holds_stays(speed):
     assert any("it stays" in line for line in blow.checks())
 
 
+@pytest.mark.parametrize(("speed", "said"), [(150.0, False), (250.0, True)])
+def test_the_metals_inertia_is_told_of(speed, said):
+    """7800 v^2/3e8 is 1 at 196 m/s; at 500 m/s 20 um of copper go through each other."""
+    _, blow = struck(target={**STEEL, "Sy_Pa": 3e8}, law="fitted", speed=speed)
+    assert any("inertia" in line for line in blow.checks()) is said
+    soft = {"E_Pa": 1.2e11, "nu": 0.34, "Sy_Pa": 3e8, "density_kg_m3": 8960.0}
+    _, blow = struck(
+        target=soft, ball=soft, law="fitted", radius=1e-5, speed=500.0 if said else 150.0
+    )
+    assert any("more than the radius" in line for line in blow.checks()) is said
+
+
 def test_a_ball_that_is_put_down_is_no_blow():
     """Its weight, 40 mN, presses 5 mm of steel in by 24 nm: 1e-9 m/s is lost in their round-off."""
     soft = {**STEEL, "Sy_Pa": 3e8}
