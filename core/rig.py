@@ -41,10 +41,12 @@ Number = Annotated[float, Field(strict=True)]
 
 
 class Quantity(InputTable):
-    """A value and its standard deviation; 0 means taken as exact.
+    """A value and its standard deviation; 0 means taken as exact, `known = "guess"` half of it.
 
     Examples
     --------
+    >>> Quantity.model_validate({"value": 3.5e8, "known": "guess"}).std
+    175000000.0
     >>> Quantity.model_validate({"value": 2.0e11, "std": 4.0e9}).std
     4000000000.0
     >>> Quantity.model_validate(9.81)
@@ -57,6 +59,8 @@ class Quantity(InputTable):
     @model_validator(mode="before")
     @classmethod
     def _from_number(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "known" in given:
+            return _guessed(given)
         if isinstance(given, dict | Quantity):
             return given
         if isinstance(given, bool) or not isinstance(given, int | float):
@@ -67,6 +71,19 @@ class Quantity(InputTable):
     def relative(self) -> float:
         """Standard deviation over value [-]."""
         return self.std / abs(self.value) if self.value else 0.0
+
+
+def _guessed(given: dict[str, Any]) -> dict[str, Any]:
+    """A quantity that its table marks as a guess, with the standard deviation of one."""
+    plain = {name: entry for name, entry in given.items() if name != "known"}
+    if given["known"] != "guess":
+        raise ValueError('known = "guess", or a std')
+    if "std" in plain:
+        raise ValueError('known = "guess" or a std, not both')
+    value = plain.get("value")
+    if isinstance(value, int | float):
+        plain["std"] = RULES.guessed * abs(value)
+    return plain
 
 
 def value_of(quantity: Quantity | None, otherwise: float = math.nan) -> float:

@@ -55,6 +55,10 @@ class CoreRules:
         0.11, "relative standard deviation of a hardness stated without one [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    guessed: float = rule(
+        0.5, "standard deviation over a value that is stated as a guess [-]",
+        "within a factor of 2 nineteen times in twenty, as a strength by the class of metal",
+    )  # fmt: skip
     flow_first: float = rule(
         1e-6, "first plastic strain of a written law's table [-]",
         "a hundredth of what a test shows",

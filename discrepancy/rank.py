@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -12,7 +13,7 @@ from ..dynamics.mechanisms import MECHANISMS, NAMELESS
 from ..dynamics.mechanisms.base import Mechanism
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
-from .inference.fit import Fit, baseline_situations, fit, grid_of
+from .inference.fit import Fit, baseline_situations, expand, fit, grid_of
 from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
@@ -74,8 +75,8 @@ class Ranking:
     ----------
     problem
         What they were fitted to: outliers have no weight in it.
-    base
-        Fit of the baseline.
+    base, stated
+        Fit of the baseline, and its algebra at the stated numbers, where the first pass is.
     screened
         First pass, by the mechanisms' own order.
     singles, pairs
@@ -88,6 +89,7 @@ class Ranking:
 
     problem: Problem
     base: Fit
+    stated: Fit
     screened: tuple[Screened, ...]
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
@@ -118,7 +120,7 @@ def rank(
         Called with a line before each step.
     """
     progress("calibrating what is known within its uncertainty")
-    base = fit(simulator, ())
+    base, stated = fit(simulator, ()), as_stated(simulator)
     situations = baseline_situations(simulator.problem)
     excluded, screened = {}, []
     if mechanisms is None:
@@ -127,38 +129,45 @@ def rank(
         progress(f"screening {mechanism.name}")
         reason = _idle(mechanism, simulator.problem) or mechanism.ruled_out(situations)
         if not reason:
-            found = screen(simulator, base, mechanism)
+            found = screen(simulator, stated, mechanism)
             size = visible(found, base)
             if size >= RULES.invisible:
-                screened.append(found)
+                screened.append(replace(found, log_bayes=_gain(stated, base, found.effect)))
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors in all"
         if mechanism.named and not is_wrong(mechanism):
             excluded[mechanism.name] = reason
-    problem, base, screened = _cleared(simulator, base, screened)
+    problem, base, stated, screened = _cleared(simulator, base, stated, screened)
     simulator = simulator.of(problem)
-    order = sorted(screened, key=lambda s: -s.log_bayes)
-    chosen = [
-        s
-        for i, s in enumerate(order)
-        if i < RULES.full or s.log_bayes > max(order[0].log_bayes - RULES.near, 0.0)
-    ]
-    fits = []
-    for found in chosen:
-        progress(f"fitting {found.mechanism.name}")
-        fits.append(
-            fit(
-                simulator, (found.mechanism,), start=base, place=found.place, rounds=3,
-                effect=found.effect,
-            )
-        )  # fmt: skip
+    fits = _leading_fits(simulator, base, screened, progress)
     progress("sharpening the leading fits")
     fits = sharpened_leading(simulator, fits, base)
     return Ranking(
-        problem, base, tuple(s for s in screened if s.mechanism.named),
+        problem, base, stated, tuple(s for s in screened if s.mechanism.named),
         tuple(f for f in fits if f.mechanisms[0].named), (), excluded,
         tuple(_nameless(s, fits, base) for s in screened if not s.mechanism.named),
     )  # fmt: skip
+
+
+def _leading_fits(
+    simulator: Simulator, base: Fit, screened: Sequence[Screened], progress: Progress
+) -> list[Fit]:
+    """Fit in full what leads by its screening, until no screening comes near the best fit."""
+    order = sorted(screened, key=lambda s: -s.log_bayes)
+    fits: list[Fit] = []
+    best = -math.inf
+    for found in order:
+        least = max(min(order[0].log_bayes, best) - RULES.near, 0.0)
+        if len(fits) >= RULES.full and found.log_bayes <= least:
+            break
+        progress(f"fitting {found.mechanism.name}")
+        one = fit(
+            simulator, (found.mechanism,), start=base, place=found.place, rounds=3,
+            effect=found.effect,
+        )  # fmt: skip
+        fits.append(one)
+        best = max(best, one.log_evidence - base.log_evidence)
+    return fits
 
 
 def _nameless(screened: Screened, fits: Sequence[Fit], base: Fit) -> Nameless:
@@ -178,16 +187,34 @@ def _idle(mechanism: Mechanism, problem: Problem) -> str:
     return f"its numbers would rest on the modulus of {', '.join(tables)}, which is not stated"
 
 
+def as_stated(simulator: Simulator) -> Fit:
+    """Return the baseline with every number as stated.
+
+    Where much is missing, the baseline's own fit pulls the stated numbers to where no effect is
+    what it is beside the true ones.
+    """
+    problem = simulator.problem
+    z = np.zeros(problem.n_z)
+    found = expand(simulator, (), grid_of(problem, ()), z, np.zeros(0), None)
+    return replace(found, z=z)
+
+
 def screen(simulator: Simulator, base: Fit, mechanism: Mechanism) -> Screened:
-    """Simulate a mechanism over its grid at the baseline's fit; use the baseline's derivatives."""
+    """Simulate a mechanism over its grid at a baseline's unknowns, with the derivatives there."""
     grid = grid_of(simulator.problem, (mechanism,))
     responses = responses_at(simulator, (mechanism,), grid, base.z)
     change = responses - (base.here + base.linear.J @ (base.z - base.expanded))
     effect = grid.refine(change)
-    log_bayes = float(base.mixture.gain(base.residual[None, :], effect)[0])
+    log_bayes = _gain(base, base, effect)
     chi2 = np.sum(base.linear.white(base.residual - effect) ** 2, axis=1)
     place = grid.places()[int(np.argmin(chi2))]
     return Screened(mechanism, grid, change, effect, log_bayes, place)
+
+
+def _gain(stated: Fit, base: Fit, effect: Array) -> float:
+    """Ln B of an effect (k, m) beside the stated numbers, against the baseline's own fit."""
+    gain = float(stated.mixture.gain(stated.residual[None, :], effect)[0])
+    return gain + stated.log_evidence - base.log_evidence
 
 
 def visible(found: Screened, base: Fit) -> float:
@@ -197,8 +224,8 @@ def visible(found: Screened, base: Fit) -> float:
 
 
 def _cleared(
-    simulator: Simulator, base: Fit, screened: list[Screened]
-) -> tuple[Problem, Fit, list[Screened]]:
+    simulator: Simulator, base: Fit, stated: Fit, screened: list[Screened]
+) -> tuple[Problem, Fit, Fit, list[Screened]]:
     """Take the weight from outliers, and fit and screen again what that changes."""
     judge = base
     lead = max(screened, key=lambda s: s.log_bayes, default=None)
@@ -210,15 +237,14 @@ def _cleared(
     problem = simulator.problem
     outliers = outlying(problem, judge)
     if not outliers.any():
-        return problem, base, screened
+        return problem, base, stated, screened
     problem = without_weight(problem, outliers)
-    again = fit(simulator.of(problem), (), start=base, rounds=2)
-    residual = again.residual[None, :]
+    simulator = simulator.of(problem)
+    again, stated = fit(simulator, (), start=base, rounds=2), as_stated(simulator)
     return (
-        problem,
-        again,
-        [replace(s, log_bayes=float(again.mixture.gain(residual, s.effect)[0])) for s in screened],
-    )
+        problem, again, stated,
+        [replace(s, log_bayes=_gain(stated, again, s.effect)) for s in screened],
+    )  # fmt: skip
 
 
 def sharpened_leading(

@@ -31,10 +31,6 @@ class DiagnosisRules:
         1000.0, "gain in ln evidence beyond which another counts by its share of it [nat]",
         "of the same sets mean ln p is -1.02 without, -0.84 with 300, -0.81 with 700 and 1500",
     )  # fmt: skip
-    beside: float = rule(
-        0.07, "odds of something outside beside what leads, before its fit is looked at [-]",
-        "of the same sets mean ln p is -0.89 without, -0.86 with 0.03 to 0.15",
-    )  # fmt: skip
     said: float = rule(
         0.5, "probability from which what leads is said [-]",
         "more likely than not",

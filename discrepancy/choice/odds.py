@@ -87,7 +87,8 @@ def odds_of(
     sampled
         Sampled ln evidence over the baseline, of the explanations that have it.
     beside
-        Ln Bayes factor of something that acts beside each fit, by how that fits.
+        Ln Bayes factor of something that acts beside each fit, by how that fits: what a fit that
+        is bad loses by it, and what something outside has for each.
     """
     gained = gains(ranking)
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
@@ -97,11 +98,14 @@ def odds_of(
     for label, gain in gained.items():
         names[label] = () if label == BASELINE else tuple(label.split("+"))
         log[label] = log_prior(names[label], share) + tempered(gain)
+    unseen = [
+        log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0)
+        for label, odds in (beside or {}).items()
+    ]
+    for label, odds in (beside or {}).items():
+        log[label] -= max(odds, 0.0)
     log[OUTSIDE], alike = _outside(ranking, log)
-    if beside:
-        lead = max(beside, key=lambda name: log[name])
-        more = log[lead] + math.log(RULES.beside) + beside[lead]
-        log[OUTSIDE] = float(np.logaddexp(log[OUTSIDE], more))
+    log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *unseen]))
     total = float(logsumexp(list(log.values())))
     found = {k: math.exp(x - total) for k, x in sorted(log.items(), key=lambda item: -item[1])}
     return Odds(names, _supported(found), alike)

@@ -48,7 +48,7 @@ def outside_of(problem: Problem, base: Fit) -> Mixture:
 
 def odd_repeats(problem: Problem) -> float:
     """Ln odds, by the repeats alone, that something is outside which no simulation knows."""
-    found = [_worth(math.log(2.0) + float(norm.logsf(abs(d.z)))) for d in problem.drifts]
+    found = [_worth(d.log_p) for d in problem.drifts]
     found += [_worth(f.log_p) for f in problem.followed]
     found += [_of_scatter(s) for s in problem.scatters]
     return max(found, default=-math.inf)

@@ -57,10 +57,9 @@ def _leading_pairs(
     ranking: Ranking, among: Sequence[Screened]
 ) -> list[tuple[Screened, Screened, Array]]:
     """Return the best pairs by the sum of their effects, and where in their priors they fit."""
-    base = ranking.base
-    w = base.linear.white(base.residual)
+    linear, w = ranking.stated.linear, ranking.stated.linear.white(ranking.stated.residual)
     thin = [np.arange(0, len(s.effect), max(len(s.effect) // RULES.pair_places, 1)) for s in among]
-    whites = [base.linear.white(s.effect[t]) for s, t in zip(among, thin, strict=True)]
+    whites = [linear.white(s.effect[t]) for s, t in zip(among, thin, strict=True)]
     scored = []
     own = [e @ w - 0.5 * np.sum(e**2, axis=1) for e in whites]
     alone = max((_mean(x) for x in own), default=0.0)

@@ -30,11 +30,14 @@ class Drift:
         From the first trial to the last; logarithmic where cells are, else in the cells' unit.
     z
         The change over its standard error.
+    log_p
+        Ln of the chance that noise alone changes one of the observables tested by as much.
     """
 
     observable: str
     change: float
     z: float
+    log_p: float
 
 
 def drift_of(
@@ -69,5 +72,5 @@ def drift_of(
     slope = float(np.sum(place * change / std**2)) / spread
     scatter = float(np.sum(((change - slope * place) / std) ** 2)) / free
     z = slope * math.sqrt(spread / max(scatter, 1.0))
-    sure = 2.0 * float(student.sf(abs(z), free)) < RULES.false_alarms / observables
-    return Drift(observable, slope, z) if sure else None
+    log_p = math.log(2.0 * observables) + float(student.logsf(abs(z), free))
+    return Drift(observable, slope, z, log_p) if log_p < math.log(RULES.false_alarms) else None

@@ -35,7 +35,7 @@ class Followed:
     span
         Largest difference between entries at one condition; logarithmic where cells are.
     log_p
-        Ln of the chance that noise alone differs by as much.
+        Ln of the chance that noise alone differs by as much in one of all that were tested.
     """
 
     column: str
@@ -84,6 +84,7 @@ def followed_of(
     if free == 0:
         return None
     noise = max(within / left, 1.0) if left else 1.0
-    log_p = float(fisher.logsf(between / free / noise, free, left or _SURE_OF))
-    sure = log_p < math.log(FALSE_ALARMS / tested)
-    return Followed(column, observable, span, max(log_p, -700.0)) if sure else None
+    alone = float(fisher.logsf(between / free / noise, free, left or _SURE_OF))
+    log_p = max(alone + math.log(tested), -700.0)
+    sure = log_p < math.log(FALSE_ALARMS)
+    return Followed(column, observable, span, log_p) if sure else None

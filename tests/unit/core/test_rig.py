@@ -31,6 +31,7 @@ MISTAKES = {
     ("strikers", "rod", "tip_flat_radius_m"): (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
     ("target", "nu"): (0.5, "target.nu: 0.5"),
     ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
+    ("target", "Sy_Pa"): ({"value": 3e8, "known": "well"}, 'target.Sy_Pa: .*known = "guess"'),
     ("strikers", "rod", "mass"): (1.0, "strikers.rod.mass: unknown key"),
     ("noise",): ({"restituton": 0.1}, "noise.restituton: unknown key"),
     ("friction",): ({"coefficient": -1.0}, "friction.coefficient: -1.0"),

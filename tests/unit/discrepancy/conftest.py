@@ -167,7 +167,7 @@ def nulls_of(scatter: Any) -> Nulls:
 
 
 def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) -> Ranking:
-    return Ranking(given, base, tuple(screened), tuple(singles), tuple(pairs), {})
+    return Ranking(given, base, base, tuple(screened), tuple(singles), tuple(pairs), {})
 
 
 @pytest.fixture(scope="session")

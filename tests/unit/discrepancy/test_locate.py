@@ -84,7 +84,7 @@ def test_an_oblique_ball_has_an_angle_though_it_leans_nowhere(toy) -> None:
 
 
 def test_a_drift_is_a_miss_along_the_order_of_testing(toy, located) -> None:
-    given = toy.problem([0.0] * 4, speeds=SPEEDS, drifts=(Drift("restitution", 0.1, 7.0),),
+    given = toy.problem([0.0] * 4, speeds=SPEEDS, drifts=(Drift("restitution", 0.1, 7.0, -26.0),),
                         rig=toy.problem([0.0] * 4).rig)  # fmt: skip
     (miss,) = locate(given, toy.fit_of([0.0] * 4), toy.nulls_of(UNIT)).misses
     assert (miss.observable, miss.covariate) == ("restitution", ORDER)

@@ -138,7 +138,7 @@ def test_scatter_beyond_the_noise_is_said_first(case) -> None:
 
 
 def test_a_drift_is_said_beside_any_verdict(case) -> None:
-    drift = Drift("peak_force_N", math.log(1.1), 5.0)
+    drift = Drift("peak_force_N", math.log(1.1), 5.0, -14.0)
     found = case(odds(a=0.99), drifts=(drift,))
     assert found.verdict == "missing-physics"
     assert "peak_force_N: repeats of one condition change by +10.0 %" in found.reasons[-1]
@@ -207,15 +207,19 @@ def test_wrong_numbers_share_by_kind_and_the_struck_strength_has_most() -> None:
 
 
 def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy) -> None:
-    ranking = singles_of(toy, 30.0, 0.0)
-    # of the others it is not asked
-    found = odds_of(ranking, beside={"a": math.log(3.0 / RULES.beside), "b": 500.0})
-    assert found.outside == pytest.approx(3.0 * found.probability["a"], rel=1e-3)
+    ranking = singles_of(toy, 30.0, 29.0)
+    fits = odds_of(ranking, beside={"a": 0.0, "b": 0.0})
+    found = odds_of(ranking, beside={"a": math.log(200.0), "b": 0.0})
+    share = found.probability["a"] / found.probability["b"]
+    assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / 200.0)
+    outside = PRIORS[OUTSIDE] * (200.0 * found.probability["a"] + found.probability["b"])
+    assert found.outside == pytest.approx(outside, rel=1e-3)
 
 
 def test_a_drift_that_is_sure_leaves_the_rest_to_something_outside(toy) -> None:
     ranking = toy.ranking_of(
-        toy.problem([0.0] * CELLS, drifts=(Drift("restitution", 0.1, 20.0),)), toy.fit_of(ZERO)
+        toy.problem([0.0] * CELLS, drifts=(Drift("restitution", 0.1, 20.0, -200.0),)),
+        toy.fit_of(ZERO),
     )
     assert odds_of(ranking).outside > 0.99
 

@@ -42,7 +42,7 @@ def test_what_no_law_explains_is_taken_up(toy) -> None:
 
 def test_a_drift_is_worth_what_its_p_value_can_be(toy) -> None:
     p = 1e-4
-    given = toy.problem([0.0], drifts=(Drift("restitution", 0.1, 3.8906),))
+    given = toy.problem([0.0], drifts=(Drift("restitution", 0.1, 3.9, math.log(p)),))
     assert odd_repeats(given) == pytest.approx(-math.log(-math.e * p * math.log(p)), abs=1e-3)
     assert odd_repeats(SimpleNamespace(drifts=(), scatters=(), followed=())) == -math.inf
 
