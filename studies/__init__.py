@@ -5,7 +5,6 @@ proof          effects concealed in made-up recordings, diagnosed blindly, score
 third_world    the same by another simulator; peers: rules that the diagnosis has to beat
 challenge      concealed sets for other people's methods
 calibration    where truths lie in their posteriors: of prior draws, and (at_data) at recordings
-sensitivity    what verdicts turn on: priors, costs, errors, stages
 interventions  known effects of real recordings concealed, diagnosed, judged by a plan
 synthetic      rendered clips, markers, scans and sounds with a known truth
 campaign       gallery, claims and trends of the finite-element campaign

@@ -23,19 +23,18 @@ from scipy.special import logsumexp
 
 from ..core.arrays import Array
 from ..core.processes.threads import in_one_thread
-from ..discrepancy.choice.pairs import PairEffect
+from ..discrepancy.choice.pairs import PairEffect, with_pairs
 from ..discrepancy.comparison.forward import Simulator
 from ..discrepancy.comparison.problem import Problem, problem_of
 from ..discrepancy.inference.derivatives import FORMS, derivatives
 from ..discrepancy.inference.fit import Fit, fit, fit_anchored
 from ..discrepancy.inference.linear import Mixture
-from ..discrepancy.rank import screen, sharpened_leading
+from ..discrepancy.rank import rank, screen, sharpened_leading
 from ..discrepancy.unknowns.lawerror import SIZES
 from ..recordings import read
 from ..recordings.shipped import FOLDER
 from .calibration import shares
 from .proof.ranks import read_ranks
-from .sensitivity import explained
 
 LEADING = {
     "kharaz-2001-oblique": ("tangential-compliance",),
@@ -162,8 +161,10 @@ def lines(out: Path, draws: int, sets: Mapping[str, tuple[str, ...]]) -> Iterato
         todo = [k for k in range(draws) if (name, k) not in known]
         if not todo:
             continue
-        ranking = explained(problem_of(read(FOLDER / name))).ranking
-        simulator = Simulator(ranking.problem)
+        simulator = Simulator(problem_of(read(FOLDER / name)))
+        ranking = rank(simulator)
+        simulator = simulator.of(ranking.problem)
+        ranking = with_pairs(simulator, ranking)
         found = next(f for f in ranking.fits if f.names == mechanisms)
         for number in todo:
             rng = np.random.default_rng([list(LEADING).index(name), number])

@@ -24,7 +24,6 @@ RUN = "dentscope campaign run, publish"
 PROOFS = {
     "ranks.jsonl": ("draws from the priors", "python -m dentscope.studies.calibration"),
     "ranks-at-data.jsonl": ("shipped recordings", "python -m dentscope.studies.at_data"),
-    "altered.jsonl": ("open sets, shipped recordings", "python -m dentscope.studies.sensitivity"),
     "third-world.json": (
         "its plan",
         "python -m dentscope.studies.proof.third_world run, score",

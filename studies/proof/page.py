@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from ...core.output import write_file
-from .altered import ALTERED, STAGES, altered_lines, stages_picture
 from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
 from .power import PICTURE, picture, power_lines, read_rows, shown
@@ -152,7 +151,6 @@ def details(runs: list[dict[str, Any]]) -> str:
         ]
         lines += power_lines(read_rows(run.get("power", [])))
         lines += [*_inclusion_rows(run.get("inclusion", [])), ""]
-    lines += altered_lines(read_ranks(ALTERED))
     lines += rank_lines(read_ranks())
     lines += at_data_lines(read_ranks(AT_DATA))
     return "\n".join([*lines, _OTHERS, ""])
@@ -165,8 +163,6 @@ def publish(runs: list[dict[str, Any]], docs: Path) -> None:
     power = (_shown(runs) or {}).get("power")
     if power:
         picture(read_rows(power), docs / "pictures" / PICTURE)
-    if ALTERED.exists():
-        stages_picture(read_ranks(ALTERED), docs / "pictures" / STAGES)
 
 
 def _shown(runs: list[dict[str, Any]]) -> dict[str, Any] | None:
