@@ -39,8 +39,9 @@ def impact(
     angle_deg: float | None = None, approach_tangential_m_s: float | None = None,
     approach_spin_rad_s: float | None = None, striker: str | None = None,
     modes: int | None = None, loss_factor: float | None = None,
-    support: Literal["rigid", "sprung", "plate", "half-space"] | None = None,
-    support_damping_N_s_m: float | None = None, finite_tip: bool | None = None,
+    support: Literal["rigid", "sprung", "plate", "half-space", "rod"] | None = None,
+    support_damping_N_s_m: float | None = None, support_radius_m: float | None = None,
+    finite_tip: bool | None = None,
     repeats: int | None = None, flight_s: float | None = None, temperature_K: float | None = None,
     max_steps: int | None = None, max_contacts: int | None = None,
 ) -> Blow:  # fmt: skip
@@ -66,8 +67,8 @@ def impact(
         Which one of a file with several.
     modes, loss_factor
         Vibrations of a rod that are simulated, and their damping.
-    support, support_damping_N_s_m
-        How the flat rests; the damping is of a sprung one.
+    support, support_damping_N_s_m, support_radius_m
+        How the flat rests; the damping of a sprung one, the radius of a rod whose end is the flat.
     finite_tip, repeats
         Whether the curvature of a rod's tip ends at its shank; blows on the same spot.
     flight_s, max_steps, max_contacts, temperature_K

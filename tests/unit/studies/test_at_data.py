@@ -61,7 +61,8 @@ def test_draws_go_on_where_they_stopped(tmp_path, monkeypatch) -> None:
     )
     monkeypatch.setattr(at_data, "read", lambda place: place.name)
     monkeypatch.setattr(at_data, "problem_of", lambda read: read)
-    monkeypatch.setattr(at_data, "explained", lambda problem: SimpleNamespace(ranking=ranking))
+    monkeypatch.setattr(at_data, "rank", lambda simulator: ranking)
+    monkeypatch.setattr(at_data, "with_pairs", lambda simulator, ranking: ranking)
     monkeypatch.setattr(at_data, "ranks", lambda simulator, found, rng: {"k": rng.random()})
     out = tmp_path / "ranks.jsonl"
     whole = list(at_data.lines(out, 2, LEADING))
