@@ -12,6 +12,9 @@ from ..findings import Verdict
 from ..rules import RULES
 from .wording import counted, explanation, joined, number_name, percent, quantity
 
+# limit: deviation of a logarithm beyond which both ends are told [-]: ± would reach below zero
+_WIDE = 0.3
+
 # limit: explanations whose change is told [-]: a line
 _CHANGED = 3
 
@@ -48,7 +51,8 @@ def _time(minutes: float) -> str:
 
 def _step(p: Proposal) -> str:
     often = int(p.trial.get("repeats", 1))
-    text = f"strike {counted(often, 'time')}: {p.change}" if p.kind == "trial" else p.change
+    times = f"{often} times: " if often > 1 else ""
+    text = f"strike {times}{p.change}" if p.kind == "trial" else p.change
     return f"{text[0].upper()}{text[1:]} ({_time(p.minutes)})."
 
 
@@ -68,9 +72,11 @@ def _meaning(v: Verdict, one: Telling) -> str:
     for name, (mean, std) in one.expected.items():
         value = stated * math.exp(mean) if row is None else math.exp(mean) if logarithm else mean
         wide = abs(value) * std if logarithm else std
-        cases.append(
-            f"{quantity(value, unit)} ± {quantity(wide, unit)} if {explanation(name, v.titles)}"
-        )
+        told = f"{quantity(value, unit)} ± {quantity(wide, unit)}"
+        if logarithm and std > _WIDE:
+            ends = (value * math.exp(-std), value * math.exp(std))
+            told = f"{quantity(ends[0], unit)} to {quantity(ends[1], unit)}"
+        cases.append(f"{told} if {explanation(name, v.titles)}")
     what = number_name(one.read) if row is None else row.label
     return f"Most telling is step {one.step + 1}, {what}: {'; '.join(cases)}."
 
