@@ -44,12 +44,12 @@ class Entry(NamedTuple):
 
 
 def entries() -> list[Entry]:
-    """25 nulls, 55 singles, 8 pairs, 12 outside."""
-    wanted = [("null", NULLS[k % len(NULLS)]) for k in range(25)]
-    singles = [name for _ in range(3) for name in EFFECTS]
-    wanted += [("single", name) for name in singles[:55]]
-    wanted += [("pair", f"{a}+{b}") for _, a, b in PAIRS]
-    wanted += [("outside", name) for _ in range(3) for name in OUTSIDE]
+    """50 nulls, 110 singles, 16 pairs, 24 outside."""
+    wanted = [("null", NULLS[k % len(NULLS)]) for k in range(50)]
+    singles = [name for _ in range(6) for name in EFFECTS]
+    wanted += [("single", name) for name in singles[:110]]
+    wanted += [("pair", f"{a}+{b}") for _ in range(2) for _, a, b in PAIRS]
+    wanted += [("outside", name) for _ in range(6) for name in OUTSIDE]
     return [Entry(k, *one) for k, one in enumerate(wanted)]
 
 
@@ -115,7 +115,8 @@ def main() -> None:
     if given.what == "score":
         begun = Ledger(given.out / "ledger.jsonl").of("begin")[""]
         lines = read_lines(given.out)
-        keep(kept(open_run(given.out), lines, plan=begun["plan"], tree=begun["tree"]))
+        whole = {"plan": begun["plan"], "tree": begun["tree"], "total": len(entries())}
+        keep(kept(open_run(given.out), lines, **whole))
         return
     for name, event in carry_on(given.out):
         state = "sealed" if event["verdict"] else f"no verdict: {event['message']}"

@@ -39,7 +39,7 @@ dentscope.studies.proof.third_world run`). Columns as above, the three best rule
 
 
 def kept(
-    cases: Sequence[Case], lines: Sequence[dict[str, Any]], *, plan: str, tree: str
+    cases: Sequence[Case], lines: Sequence[dict[str, Any]], *, plan: str, tree: str, total: int
 ) -> dict[str, Any]:
     """What is kept of a run: the comparison, and of every set its truth and what leads.
 
@@ -51,6 +51,8 @@ def kept(
         What the peers said of them.
     plan, tree
         SHA-256 of the plan and of the tool.
+    total
+        Sets of the list.
     """
     of = {c.name: c for c in cases}
     best = best_peer(compare(lines))["name"]
@@ -69,7 +71,9 @@ def kept(
                 "peer_front": bool(mark_of(line, best).front),
             }
         )  # fmt: skip
-    return {"plan": plan, "tree": tree, "compared": compare(lines), "sets": sets}
+    return {
+        "plan": plan, "tree": tree, "total": total, "compared": compare(lines), "sets": sets
+    }  # fmt: skip
 
 
 def _true(truth: dict[str, Any]) -> str:
@@ -98,7 +102,7 @@ def third_world_lines(path: Path = FOUND) -> list[str]:
     own = [r for r in found["rows"] if r["name"] == DIAGNOSIS]
     done = found["sets"]
     intro = _INTRO.format(
-        done=done, ended="" if done == 100 else " of 100, in random order",
+        done=done, ended="" if done == kept["total"] else f" of {kept['total']}, in random order",
         nulls=found["nulls"], outside=found["outside"], plan=kept["plan"][:12],
         tree=kept["tree"][:12],
     )  # fmt: skip
