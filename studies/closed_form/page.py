@@ -30,11 +30,12 @@ def published_section(content: dict[str, Any]) -> str:
     errors = content["errors"]
     kinds = {
         "compact, left out": errors["compact"]["left_out"],
-        "fitted": errors["fitted"]["fitted"],
         "fitted, left out": errors["fitted"]["left_out"],
     }
     rows = [["beyond first yield", *(f"{kind}: mean, largest" for kind in kinds)]]
-    for name, (title, scale, _) in MARKS.items():
+    for name, (title, scale, aim) in MARKS.items():
+        if not aim:
+            continue
         cells = [", ".join(f"{scale * x:.3g}" for x in kind[name]) for kind in kinds.values()]
         rows.append([title, *cells])
     levels = sorted({x for c in content["provenance"]["campaigns"] for x in c["accuracy"]})
@@ -45,18 +46,17 @@ def published_section(content: dict[str, Any]) -> str:
             f"{', '.join(levels)}.\n",
             _coefficients(content),
             markdown(rows),
-            *about_hardening(content),
+            *about_hardening(content)[:1],
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
 
 
 def _coefficients(content: dict[str, Any]) -> str:
-    """Coefficients with their standard errors, three a line."""
-    _, *rows = coefficient_rows(content)
-    cells = [f"{name:<4}{value:>9} ± {error:<9}" for name, value, error in rows]
-    lines = ["".join(cells[k : k + 3]).rstrip() for k in range(0, len(cells), 3)]
-    return "\n".join(["With their standard errors:\n", "```", *lines, "```\n"])
+    """Coefficients, five a line."""
+    cells = [f"{name:<4}{value:>9}   " for name, value, _ in coefficient_rows(content)[1:]]
+    lines = ["".join(cells[k : k + 5]).rstrip() for k in range(0, len(cells), 5)]
+    return "\n".join(["```", *lines, "```\n"])
 
 
 def judged_section(
@@ -85,7 +85,7 @@ def judged_section(
         about += ": the checksum of the coefficients above"
     elif drawn:
         about += f": earlier coefficients; those above have {digest[:12]}"
-    rows = error_rows(errors)
+    rows = [row for row in error_rows(errors) if row[-1]]
     deviations = markdown(uncertainty_rows(within))
     return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}\n{deviations}{JUDGED_END}"
 
