@@ -15,7 +15,7 @@ from typing import TypeVar
 Number = TypeVar("Number")
 
 
-def rule(value: Number, meaning: str, source: str) -> Number:
+def rule(value: Number, meaning: str, source: str = "chosen; no measurement is kept") -> Number:
     """Return a field of a register: a number with what is said of it.
 
     Parameters
@@ -25,7 +25,8 @@ def rule(value: Number, meaning: str, source: str) -> Number:
     meaning
         What it is, its unit at the end.
     source
-        Where it is from: a standard, a paper, a reason, or the benchmark that chose it.
+        Where it is from: a standard, a paper, a reason, or the benchmark that chose it; what has
+        none was chosen.
     """
     found: Number = field(default=value, metadata={"meaning": meaning, "source": source})
     return found
@@ -39,10 +40,7 @@ class CoreRules:
         0.07, "standard deviation between specimens of one metal, of the stress at 0.2 % [-]",
         "15 and more bars of two steels (the docstring beside it)",
     )  # fmt: skip
-    rows_a_decade: int = rule(
-        8, "rows of a flow curve in a decade of strain [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    rows_a_decade: int = rule(8, "rows of a flow curve in a decade of strain [-]")
     strain_seen: float = rule(
         1e-4, "plastic strain below which a tension test shows none [-]",
         "a twentieth of the proof strain",
@@ -52,9 +50,8 @@ class CoreRules:
         "metals are found between 2.5 and 3.2 (Johnson, Contact Mechanics, 1985, 6.3)",
     )  # fmt: skip
     hardness_spread: float = rule(
-        0.11, "relative standard deviation of a hardness stated without one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.11, "relative standard deviation of a hardness stated without one [-]"
+    )
     guessed: float = rule(
         0.5, "standard deviation over a value that is stated as a guess [-]",
         "within a factor of 2 nineteen times in twenty, as a strength by the class of metal",

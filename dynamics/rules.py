@@ -11,10 +11,7 @@ from ..core.rules import rule
 class ImpactRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    fall_steps: int = rule(
-        128, "steps of a fall with drag [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    fall_steps: int = rule(128, "steps of a fall with drag [-]")
     put_down: float = rule(
         4e-5, "v^2 over g times the depth of a weight at rest, from which there is a blow [-]",
         "a table's round-off of 5e-8 of the depth is then below 1 % of the energy",
@@ -24,13 +21,9 @@ class ImpactRules:
         "three digits of a sheet",
     )  # fmt: skip
     slope_step: float = rule(
-        1e-4, "step of differences of a force that is smooth between its borders [depth]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    strength_nodes: int = rule(
-        41, "nodes of the table over ln(depth/R) [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        1e-4, "step of differences of a force that is smooth between its borders [depth]"
+    )
+    strength_nodes: int = rule(41, "nodes of the table over ln(depth/R) [-]")
     partial_slip: float = rule(
         0.77, "part of Mindlin's stiffness that a single spring has which stands for slip from the "
         "edge inwards [-]",
@@ -51,45 +44,29 @@ class ImpactRules:
         "peak [-]",
         "restitution and times come out within ten times this of the integral",
     )  # fmt: skip
-    hertz_error: float = rule(
-        0.003, "error of Hertz's force in a shallow contact [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    hertz_error: float = rule(0.003, "error of Hertz's force in a shallow contact [-]")
     hertz_sphere: tuple[float, ...] = rule(
         (0.45, 1.2), "and what a sphere, no half-space, adds to it, over x = a/R and x^2 [-]",
         "finite elements of an elastic sphere on a rigid flat, nu 0.3 (0.49): 2.9 (2.2) % at a "
         "depth of 0.003 R, 5.8 (4.2) at 0.01, 25 (18) at 0.1, 72 (57) at 0.3; of an elastic flat "
         "under a rigid sphere 1.1 (0.1) to 7.4 (-2.1)",
     )  # fmt: skip
-    band_step: float = rule(
-        0.02, "step of a logarithm for the slopes [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    band_step: float = rule(0.02, "step of a logarithm for the slopes [-]")
     held: tuple[float, ...] = rule(
         (1.0, 0.5, 0.25, 0.1),
         "parts of a standard deviation that are tried where a whole one leaves the range [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
     visible: float = rule(
         5e-4, "smallest change of a speed that motion was ever read with [-]",
         "chosen: a camera over a hundred frames",
     )  # fmt: skip
-    stopped: float = rule(
-        0.8, "part of a speed that a fluid may take for a fall to be one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    stopped: float = rule(0.8, "part of a speed that a fluid may take for a fall to be one [-]")
     by_eye: float = rule(
         5.0, "tolerance of an angle set by eye [degrees]",
         "as the thesis states",
     )  # fmt: skip
-    axial_modes: int = rule(
-        6, "axial vibrations of a rod [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    bending_modes: int = rule(
-        9, "bending vibrations of a rod [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    axial_modes: int = rule(6, "axial vibrations of a rod [-]")
+    bending_modes: int = rule(9, "bending vibrations of a rod [-]")
     rod_loss: float = rule(
         1e-3, "loss factor of a rod [-]",
         "of steel rods; what it takes during a contact is below a thousandth",
@@ -111,9 +88,8 @@ class ImpactRules:
         "a block, and the bench that it stands on",
     )  # fmt: skip
     block_mass: float = rule(
-        0.1, "lightest block that is taken for a half-space without a word [kg]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.1, "lightest block that is taken for a half-space without a word [kg]"
+    )
     hottest: float = rule(
         0.95, "way from the reference temperature to melting up to which a strength is known [-]",
         "chosen; nearer 1 - T*^m of Johnson and Cook is no strength any more",

@@ -12,9 +12,8 @@ class FemRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
     core_radius: float = rule(
-        0.12, "radius of the innermost block over that where the fine zone begins [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.12, "radius of the innermost block over that where the fine zone begins [-]"
+    )
     linear_beyond: float = rule(
         4.0, "distance beyond which the half-space is linear [R]",
         "strains stay below 1e-4 there at a/R = 0.5; round-off of 1 + grad u would rule the "
@@ -24,27 +23,18 @@ class FemRules:
         0.5, "factor on the part of the gradients that varies within an element [-]",
         "at 1 a light elastic contact is 0.1 % too stiff; far below a half shapes cost no energy",
     )  # fmt: skip
-    forcing: float = rule(
-        0.005, "relative correction that a direction may lack [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    krylov_residual: float = rule(
-        0.2, "relative residual that a direction may leave [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    forcing: float = rule(0.005, "relative correction that a direction may lack [-]")
+    krylov_residual: float = rule(0.2, "relative residual that a direction may leave [-]")
     refactor_after: int = rule(
-        7, "steps of GMRES after which the next matrix is factorised anew [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        7, "steps of GMRES after which the next matrix is factorised anew [-]"
+    )
     pattern_reach: int = rule(
-        3, "master nodes beyond the segments in use that the matrix already couples [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        3, "master nodes beyond the segments in use that the matrix already couples [-]"
+    )
     regrowth: tuple[tuple[int, float], tuple[int, float]] = rule(
         ((5, 1.5), (8, 1.15)),
         "Newton iterations of a step, and the power of its length that the next may have [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
     elastic_until: float = rule(
         0.8, "elastic step ratio up to this part of the critical depth [-]",
         "first yield is then met by a step of its own",
@@ -54,40 +44,26 @@ class FemRules:
         "makes the smooth curve there two-sided",
     )  # fmt: skip
     soft_start: tuple[float, ...] = rule(
-        (0.03, 1.0),
-        "contact stiffness on the way to the first equilibrium, over its own [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        (0.03, 1.0), "contact stiffness on the way to the first equilibrium, over its own [-]"
+    )
     zone_behind: float = rule(
-        0.85, "inner end of the fine zone over the contact radius it is made for [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.85, "inner end of the fine zone over the contact radius it is made for [-]"
+    )
     zone_ahead: float = rule(
-        1.6, "outer end of the fine zone over the contact radius it is made for [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    zone_serves: float = rule(
-        1.35, "growth of the contact radius for which a mesh serves [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        1.6, "outer end of the fine zone over the contact radius it is made for [-]"
+    )
+    zone_serves: float = rule(1.35, "growth of the contact radius for which a mesh serves [-]")
     last_mesh: float = rule(
         0.2, "contact radius beyond which the mesh is changed no more [R]",
         "strains of the order of one: a change drops the force by 1 to 2 %",
     )  # fmt: skip
-    inner_rings: int = rule(
-        3, "rings within the innermost block [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    inner_rings: int = rule(3, "rings within the innermost block [-]")
     inside_zone: tuple[float, ...] = rule(
         (1.5, 4.0),
         "distances from the fine zone, over its radius, up to which rings are twice as wide, and "
         "coarse [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    ring_divisions: int = rule(
-        4, "divisions of a fine ring [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
+    ring_divisions: int = rule(4, "divisions of a fine ring [-]")
     ring_growth: float = rule(
         1.25, "widths of neighbouring rings [-]",
         "an abrupt change shows in the contact pressure",
@@ -103,45 +79,20 @@ class FemRules:
         "Newton's corrections fall faster than it is estimated",
     )  # fmt: skip
     hopeless_after: int = rule(
-        8, "iterations after which a residual that has not halved will not converge [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    step_cut: float = rule(
-        0.4, "part of its logarithm with which a failed step is tried again [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    stretch: float = rule(
-        2.5, "largest factor by which the last increment is extrapolated [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    deepest: float = rule(
-        0.5, "largest approach that can be asked for [R]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    gap_edges: int = rule(
-        5, "open surface elements that the fit of the gap looks at [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    edge_candidates: int = rule(
-        161, "places of the contact edge that the fit of the gap tries [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        8, "iterations after which a residual that has not halved will not converge [-]"
+    )
+    step_cut: float = rule(0.4, "part of its logarithm with which a failed step is tried again [-]")
+    stretch: float = rule(2.5, "largest factor by which the last increment is extrapolated [-]")
+    deepest: float = rule(0.5, "largest approach that can be asked for [R]")
+    gap_edges: int = rule(5, "open surface elements that the fit of the gap looks at [-]")
+    edge_candidates: int = rule(161, "places of the contact edge that the fit of the gap tries [-]")
     steps_beyond: int = rule(
         4, "steps past the last depth [-]",
         "the fit there is then two-sided",
     )  # fmt: skip
-    ripple_reach: float = rule(
-        0.36, "reach of the fit to either side in ln approach [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    ripple_degree: int = rule(
-        3, "degree of the curve within the reach [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    harmonics: int = rule(
-        2, "harmonics of the part that repeats from ring to ring [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    ripple_reach: float = rule(0.36, "reach of the fit to either side in ln approach [-]")
+    ripple_degree: int = rule(3, "degree of the curve within the reach [-]")
+    harmonics: int = rule(2, "harmonics of the part that repeats from ring to ring [-]")
     ripple_prior: float = rule(
         1.0, "weight of a ripple of nothing [steps]",
         "where a step takes the edge half a ring on, a ripple could be anything",

@@ -12,9 +12,8 @@ class RecordingRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
     unexplained: float = rule(
-        0.5, "part of the lost energy that a dent should explain at least [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.5, "part of the lost energy that a dent should explain at least [-]"
+    )
     dent_work: tuple[float, ...] = rule(
         (0.55, 1.1), "true work of a dent over p pi R d^2, least and most [-]",
         "barely plastic, and hardened",
@@ -44,17 +43,13 @@ class RecordingRules:
         "three digits",
     )  # fmt: skip
     frozen_angle: float = rule(
-        0.005, "part of the approach speed by which a frozen angle may err [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.005, "part of the approach speed by which a frozen angle may err [-]"
+    )
     pulse: tuple[float, ...] = rule(
         (0.25, 1.0), "impulse over peak force times duration, least and most [-]",
         "a rectangular pulse has 1, a ringing one may have 0.3",
     )  # fmt: skip
-    alone: float = rule(
-        0.25, "part of the masses' false alarms that goes to single strikers [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    alone: float = rule(0.25, "part of the masses' false alarms that goes to single strikers [-]")
     angles_apart: float = rule(
         2.0, "standard deviations between two readings of an angle [-]",
         "one in twenty",
@@ -76,22 +71,17 @@ class RecordingRules:
         "sunk in elastically, and piled up",
     )  # fmt: skip
     open_ends: float = rule(
-        0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]"
+    )
     beyond: float = rule(
         4.0,
         "standard deviations that are a mistake [-]",
         "one in 15 000",
     )  # fmt: skip
-    trace_samples: int = rule(
-        5, "samples of a contact from which an impulse is taken [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    trace_samples: int = rule(5, "samples of a contact from which an impulse is taken [-]")
     unstated_speed: float = rule(
-        0.02, "relative standard deviation of an approach speed stated without one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.02, "relative standard deviation of an approach speed stated without one [-]"
+    )
     repeats: int = rule(
         3, "trials at one condition from which a noise may be taken [-]",
         "two degrees of freedom",
@@ -113,9 +103,8 @@ class RecordingRules:
         "one in 700",
     )  # fmt: skip
     restitution_slip: float = rule(
-        0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]"
+    )
 
 
 RULES = RecordingRules()

@@ -77,10 +77,7 @@ class ReductionRules:
     swings: int = rule(
         6, "other half-waves of that height [-]", "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    beside: float = rule(
-        8.0, "durations before and after a pulse in which they are counted [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    beside: float = rule(8.0, "durations before and after a pulse in which they are counted [-]")
     ringing: float = rule(
         0.01, "half-wave of the other sign that a ringing has, in the peak [-]",
         "tools/benchmarks/validate_reduce_pulse.py: a sensor that rings through the pulse",
@@ -171,14 +168,10 @@ class ReductionRules:
         "distance from the course of the others, in their scatter, that no real bounce has [-]",
         "one in 10^15 by chance",
     )  # fmt: skip
-    contact_rounds: int = rule(
-        3, "rounds between the heights of contacts and the flights [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    contact_rounds: int = rule(3, "rounds between the heights of contacts and the flights [-]")
     same_flat: float = rule(
-        0.05, "difference of the contacts' heights in the largest height at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.05, "difference of the contacts' heights in the largest height at most [-]"
+    )
     flight_samples: int = rule(
         5, "samples of a flight at least [-]",
         "a parabola and two that can contradict it",
@@ -187,42 +180,29 @@ class ReductionRules:
         0.02, "change of the acceleration over a span without samples, in the fall [-]",
         "chosen: what drag of a light ball may do",
     )  # fmt: skip
-    flight_core: int = rule(
-        12, "samples with which a flight begins [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    flight_core: int = rule(12, "samples with which a flight begins [-]")
     flight_far: float = rule(
         3.5, "standard deviations of a block of samples off a flight, far from its core [-]",
         "one in 2000: the curve is less sure there",
     )  # fmt: skip
-    flight_block: float = rule(
-        0.25, "part of a flight that is taken in at once [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    flight_block: float = rule(0.25, "part of a flight that is taken in at once [-]")
     stray_blocks: int = rule(
-        2, "blocks off a flight that are passed over where the next one lies on it again [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    trim_rounds: int = rule(
-        4, "rounds in which a contact's samples are cut off [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        2, "blocks off a flight that are passed over where the next one lies on it again [-]"
+    )
+    trim_rounds: int = rule(4, "rounds in which a contact's samples are cut off [-]")
     straight: float = rule(
-        0.1, "change of a flight's speed, in the speed, below which it is straight [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.1, "change of a flight's speed, in the speed, below which it is straight [-]"
+    )
     flight_noise: float = rule(
-        3.0, "spread of a flight's samples, in that of the track, that is believed [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        3.0, "spread of a flight's samples, in that of the track, that is believed [-]"
+    )
     mostly: float = rule(
         0.6, "part of a block that lies on the flight [-]",
         "chosen: more than half",
     )  # fmt: skip
     flight_reach: int = rule(
-        2, "lengths of a flight's first part within which it is looked for next to the contact [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        2, "lengths of a flight's first part within which it is looked for next to the contact [-]"
+    )
     no_chance: float = rule(
         4.0,
         "standard deviations that are no chance [-]",
@@ -234,10 +214,7 @@ class ReductionRules:
         "is left out, and a pixel counts less [-]",
         "one in 80",
     )  # fmt: skip
-    pooled: int = rule(
-        8, "samples for which the spread of all flights counts in that of one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    pooled: int = rule(8, "samples for which the spread of all flights counts in that of one [-]")
     drag_speed: float = rule(
         0.75, "speed at which the drag coefficient is taken, in that of the launch [-]",
         "mean over a flight up and down",
@@ -252,21 +229,15 @@ class ReductionRules:
         "three decades",
     )  # fmt: skip
     missing_frame: float = rule(
-        0.02, "part of the contacts in which a frame is missing without a word [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    missing_told: float = rule(
-        0.1, "belief in a missing frame that counts [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.02, "part of the contacts in which a frame is missing without a word [-]"
+    )
+    missing_told: float = rule(0.1, "belief in a missing frame that counts [-]")
     coarse: float = rule(
-        0.01, "spread of a flight over its height that is no reason to doubt it [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.01, "spread of a flight over its height that is no reason to doubt it [-]"
+    )
     stated_size: float = rule(
-        0.02, "relative error of the fall that a stated size of the unit is trusted for [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.02, "relative error of the fall that a stated size of the unit is trusted for [-]"
+    )
     free_drag: float = rule(
         0.1, "square of the fastest over the terminal speed of a body not known, at most [-]",
         "a table-tennis ball after a fall of a metre",
@@ -300,60 +271,43 @@ class ReductionRules:
         "v^(-1/5) of Hertz, for speeds to a quarter of the first one",
     )  # fmt: skip
     impossible: float = rule(
-        3.0, "speed between two samples, in the nine tenths quantile of all, that no body has [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        3.0, "speed between two samples, in the nine tenths quantile of all, that no body has [-]"
+    )
     repeated: float = rule(
         0.35,
         "change of a frame, in that of its neighbours, below which it may repeat the one before "
         "[-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
     often_repeated: float = rule(
-        0.2, "part of the frames that do so before they count as repeated [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.2, "part of the frames that do so before they count as repeated [-]"
+    )
     edge_settled: float = rule(
         1e-4, "move at which it ends [pixel]",
         "a tenth of the floor of a position",
     )  # fmt: skip
-    edge_last: float = rule(
-        0.02, "move of the last round that is still a fit [pixel]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    edge_last: float = rule(0.02, "move of the last round that is still a fit [pixel]")
     cap: float = rule(
         0.75, "part of the half-width of a rod from which the cap is read [-]",
         "the edge of the cap is chamfered",
     )  # fmt: skip
     own_level: float = rule(
-        1.3, "contrast of a ball, in that of the clip, from which its own grey level is used [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        1.3, "contrast of a ball, in that of the clip, from which its own grey level is used [-]"
+    )
     motion_settled: float = rule(
         1e-3, "part of the misfit that a step may still promise when it ends [-]",
         "a thirtieth of a standard deviation",
     )  # fmt: skip
     window: int = rule(
-        8, "frames in which a flight is looked for; contacts closer are not told apart, and two "
+        8,
+        "frames in which a flight is looked for; contacts closer are not told apart, and two "
         "flights farther apart may have one between them [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    clean: float = rule(
-        3.0, "usual residuals below which a window fits free flight [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    stands_out: float = rule(
-        1.5, "usual residuals of the worst window at which a span is cut [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    broken: float = rule(
-        5.0, "limits of the span as one flight at which it is cut [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
+    clean: float = rule(3.0, "usual residuals below which a window fits free flight [-]")
+    stands_out: float = rule(1.5, "usual residuals of the worst window at which a span is cut [-]")
+    broken: float = rule(5.0, "limits of the span as one flight at which it is cut [-]")
     drag_even: float = rule(
-        0.15, "time next to the contact in which drag and lift count as even [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.15, "time next to the contact in which drag and lift count as even [s]"
+    )
     fewest: int = rule(
         6,
         "samples from which a piece is judged by itself, or a contact by those beside it [-]",
@@ -368,9 +322,8 @@ class ReductionRules:
         "one that is not round shows in their spread",
     )  # fmt: skip
     bottom_large: float = rule(
-        0.75, "larger of two fits at the bottom of a crater, in half-widths [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.75, "larger of two fits at the bottom of a crater, in half-widths [-]"
+    )
     bottom_small: float = rule(
         0.5, "the smaller [-]",
         "their difference tells the error of the form",
@@ -384,34 +337,23 @@ class ReductionRules:
         1.9, "part around a crater that levelling leaves out [crater radii, half-widths of a line]",
         "the rim decays within it",
     )  # fmt: skip
-    level_points: float = rule(
-        0.05, "part of the points that is left to level on [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    level_points: float = rule(0.05, "part of the points that is left to level on [-]")
     lag_pairs: int = rule(
         30, "pairs of points that a lag of the autocovariance needs [-]",
         "tell it to a fifth",
     )  # fmt: skip
     wall: tuple[float, float] = rule(
-        (0.08, 0.45), "depths, in the whole, between which a wall is followed to the surface [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        (0.08, 0.45), "depths, in the whole, between which a wall is followed to the surface [-]"
+    )
     wall_end: float = rule(
         0.14, "what a wall's end misses [steps of the scan]",
         "rendered craters without noise: its parabola, and interpolation",
     )  # fmt: skip
-    onset_after: float = rule(
-        1e-3, "time after an onset in which its rise is fitted [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    onset_before: float = rule(
-        15e-3, "time before it in which the level is taken [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    onset_after: float = rule(1e-3, "time after an onset in which its rise is fitted [s]")
+    onset_before: float = rule(15e-3, "time before it in which the level is taken [s]")
     onset_search: tuple[float, float] = rule(
-        (6e-3, 2e-3), "time before and after the steepest rise in which the onset is sought [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        (6e-3, 2e-3), "time before and after the steepest rise in which the onset is sought [s]"
+    )
     table_rows: int = rule(
         20, "rows of a record against time, of a press or a tensile test, at least [-]",
         "a zero, a turn and a slope of six each",
@@ -439,12 +381,10 @@ class ReductionRules:
     elastic_parts: tuple[float, ...] = rule(
         (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06),
         "parts of the largest stress up to which the modulus may be read [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    )
     elastic_straight: float = rule(
-        0.7, "slope of the upper half of an elastic rise in that of the lower [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.7, "slope of the upper half of an elastic rise in that of the lower [-]"
+    )
     elastic_from: tuple[float, ...] = rule(
         (0.25, 0.5, 0.7), "stress from which on it is read, in that up to which [-]",
         "slack bends the first part",
@@ -461,10 +401,7 @@ class ReductionRules:
         0.25, "step along an edge [pixel]",
         "a quarter",
     )  # fmt: skip
-    lean_frames: int = rule(
-        20, "frames from which the lean of a rod is read [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    lean_frames: int = rule(20, "frames from which the lean of a rod is read [-]")
     same_rate: float = rule(
         0.01, "part by which a container's mean rate differs from the camera's and is its own [-]",
         "rates of 29.97 and 30",
@@ -485,26 +422,15 @@ class ReductionRules:
         0.1, "by how much it does [pixel]",
         "rendered clips",
     )  # fmt: skip
-    shape_frames: int = rule(
-        15, "frames from which the shape of a tip is read [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    shape_frames: int = rule(15, "frames from which the shape of a tip is read [-]")
     mirror_least: float = rule(
-        1.0, "blurs above the flat from which on a tip is told from its reflection [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    mirror_frames: int = rule(
-        12, "frames from which a reflection's light is read [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    dull: float = rule(
-        0.02, "part of its light below which a reflection does not count [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        1.0, "blurs above the flat from which on a tip is told from its reflection [-]"
+    )
+    mirror_frames: int = rule(12, "frames from which a reflection's light is read [-]")
+    dull: float = rule(0.02, "part of its light below which a reflection does not count [-]")
     mostly_found: float = rule(
-        0.8, "part of the frames in which a ball's edge is found, else its light is used [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.8, "part of the frames in which a ball's edge is found, else its light is used [-]"
+    )
     scale_widths: tuple[tuple[float, float], ...] = rule(
         ((1e-2, 1.0), (3e-2, 1.0), (1e-1, 0.05)),
         "widths of a camera's drift, and how much each is believed beforehand [-]",
@@ -515,9 +441,8 @@ class ReductionRules:
         "2 of a pyramid, 1.5 of Hertz's sphere, 1 of a flat punch",
     )  # fmt: skip
     press_bins: int = rule(
-        60, "means of rows alike in load that tell where it meets zero, at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        60, "means of rows alike in load that tell where it meets zero, at most [-]"
+    )
 
 
 RULES = ReductionRules()

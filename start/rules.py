@@ -16,9 +16,8 @@ class StartRules:
         "chosen: they judge what the rest inferred",
     )  # fmt: skip
     least_dent: float = rule(
-        0.1, "part of the depth below which a dent says nothing about a law [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.1, "part of the depth below which a dent says nothing about a law [-]"
+    )
     press_deeper: float = rule(
         1.25, "depth of the solve over the deepest press [-]",
         "room for a stated number that is off",

@@ -70,7 +70,7 @@ def _believed(found: Bounced, source: str) -> Bounced:
     said = ", ".join(f"{b.restitution} at {b.time.value:.4g} s" for b in wrong[:3])
     if not kept:
         raise Refused(
-            "restitution", f"no restitution is known: {said}", source=source,
+            f"no restitution is known: {said}", source=source,
             allowed="flights before and after a contact that tell one between 0 and 1",
         )  # fmt: skip
     return replace(

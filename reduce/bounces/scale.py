@@ -88,7 +88,7 @@ def check_scale(scale: Scale, *, source: str) -> None:
     if abs(1.0 / (1.0 + scale.off) - 1.0) > RULES.fall_off:
         ratio = 1.0 + scale.off
         raise Refused(
-            "fall", f"it falls with {1.0 / ratio:.3g} times gravity", source=source,
+            f"it falls with {1.0 / ratio:.3g} times gravity", source=source,
             allowed=f"a fall: the unit or the stated size times {ratio:.4g} would fit, or the "
             f"rate times {math.sqrt(ratio):.4g}, or another gravity_m_s2",
         )  # fmt: skip

@@ -134,7 +134,7 @@ def reduce_bounce_times(
         )  # fmt: skip
     if not chain.shrinks(std):
         raise Refused(
-            "fades", "the intervals do not shrink beyond their scatter", source=source,
+            "the intervals do not shrink beyond their scatter", source=source,
             allowed="bounces of a ball, each flight shorter than the one before: taps do not",
         )  # fmt: skip
     return BounceTimes(chain, std, bounces, tuple(notes))

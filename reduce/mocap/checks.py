@@ -31,7 +31,7 @@ def check_fall(fall: Measured, gravity: float, source: str) -> None:
     """
     if abs(fall.value - gravity) > max(RULES.fall_off * gravity, 3.0 * fall.std):
         raise Refused(
-            "fall", f"between its contacts the body falls with {fall} m/s2", source=source,
+            f"between its contacts the body falls with {fall} m/s2", source=source,
             key="gravity_m_s2", allowed=f"about {gravity:g}: a body in free flight (check unit, "
             "frame_rate_hz and up)",
         )  # fmt: skip
@@ -47,7 +47,7 @@ def check_shape(poses: Poses, source: str) -> None:
     """
     if poses.spread > RULES.not_rigid * poses.extent:
         raise Refused(
-            "shape", f"the markers lie {1e3 * poses.spread:.3g} mm off one rigid shape of "
+            f"the markers lie {1e3 * poses.spread:.3g} mm off one rigid shape of "
             f"{1e3 * poses.extent:.3g} mm", source=source, key="markers",
             allowed=f"markers of one rigid body: up to {RULES.not_rigid:.0%} off",
         )  # fmt: skip

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ...core.inputs.toml_input import read_model
-from ..gates import drawn
 from ..measured import Measured, labelled, labels
-from ..pictures import draw_refused
+from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .body import BodyFile, make_body
 from .file import Markers, read_markers
@@ -56,7 +55,7 @@ def reduce(path: Path, options: MocapOptions) -> Reduced:
     height = np.full(seen.size, np.nan)
     height[seen] = np.nanmean(heights[seen], axis=1)
     axes = ("time [s]", "mean height of the markers [m]")
-    with drawn(lambda to, why: draw_refused(markers.time, height, to, why, axes=axes)):
+    with drawn_if_refused(markers.time, height, axes=axes):
         found = reduce_mocap(poses, body, scene, source=str(path))
     missing = f"{100.0 * markers.missing:.2g} % of the marker positions are missing"
     noise = {"frame_rate_hz": found.rate, "tip_height_m": found.flights.sigma}
@@ -69,7 +68,7 @@ def reduce(path: Path, options: MocapOptions) -> Reduced:
 
 def _point(path: Path, markers: Markers, scene: MocapScene, options: MocapOptions) -> Reduced:
     axes, height = ("time [s]", "height of the marker [m]"), markers.position[:, 0] @ scene.up
-    with drawn(lambda to, why: draw_refused(markers.time, height, to, why, axes=axes)):
+    with drawn_if_refused(markers.time, height, axes=axes):
         found = reduce_point(markers, scene, spin=options.spin)
     values = {"position_noise_m": Measured(found.noise, math.nan)}
     values["fall_acceleration_m_s2"] = found.fall

@@ -45,7 +45,6 @@ def draw_mocap(result: MocapReduction, path: Path) -> None:
         for each in result.hits:
             axis.axvline(1e3 * each.measured["time_s"].value, color="0.5", ls=":", lw=1.0)
         axis.set_xlabel("time [ms]")
-        axis.grid(alpha=0.3)
     axes[0, 0].set_title(f"restitution {hit.measured['restitution']}")
     axes[0, 1].set_title(f"impulse ratio {hit.measured['friction_impulse_ratio']}")
     axes[1, 0].set_title(
@@ -68,7 +67,6 @@ def draw_point(result: PointReduction, path: Path) -> None:
                     tau + bounce.time, np.polyval(side.coefficients[k, ::-1], tau), colour, lw=1.3
                 )
         axis.set(xlabel="time [s]", ylabel=f"{'xyz'[k]} [m]")
-        axis.grid(alpha=0.3)
     first = result.bounces[0].measured
     axes[0, 0].set_title(f"restitution {first['restitution']}")
     axes[0, 1].set_title(f"impulse ratio {first['friction_impulse_ratio']}")

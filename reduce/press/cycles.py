@@ -68,14 +68,14 @@ def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
     load, source = record.load, record.source
     if load.size < RULES.table_rows:
         raise Refused(
-            "rows", f"{load.size} rows with a load and a depth", source=source, key="load",
+            f"{load.size} rows with a load and a depth", source=source, key="load",
             allowed=f"{RULES.table_rows} or more",
         )  # fmt: skip
     noise = noise_of(load)
     top = float(load.max())
     if not top > RULES.pulse_over_noise * noise:
         raise Refused(
-            "noise", f"the largest load is {top / max(noise, 1e-300):.2g} times the noise",
+            f"the largest load is {top / max(noise, 1e-300):.2g} times the noise",
             source=source, key="load", allowed="a press above the noise of the load cell",
         )  # fmt: skip
     deep = max(RULES.cycle_depth * top, RULES.pulse_over_noise * noise)
@@ -115,7 +115,7 @@ def _check(record: PressRecord, found: Sequence[Cycle]) -> None:
     long = missing > RULES.hole * (largest.unloading[-1] - largest.begin)
     if (long | (within > (1.0 - RULES.hole) * largest.peak)).any():
         raise Refused(
-            "hole", "rows without a number at the largest load, or many",
+            "rows without a number at the largest load, or many",
             source=record.source, key="load", allowed="a load cell whose range is not reached",
         )  # fmt: skip
     for cycle in found:
@@ -124,12 +124,12 @@ def _check(record: PressRecord, found: Sequence[Cycle]) -> None:
         grown = np.ptp(record.depth[equal]) if equal.size >= RULES.flat_samples else 0.0
         if grown > RULES.clipped_depth * np.ptp(record.depth):
             raise Refused(
-                "cell", f"{equal.size} equal loads at the top while the depth grows: clipped",
+                f"{equal.size} equal loads at the top while the depth grows: clipped",
                 source=record.source, key="load", allowed="a load cell whose range is not reached",
             )  # fmt: skip
     if largest.least > RULES.least_unloaded:
         raise Refused(
-            "unloaded", f"after its largest value the load falls to {largest.least:.0%} of it",
+            f"after its largest value the load falls to {largest.least:.0%} of it",
             source=record.source, key="load", allowed="a press that is taken off again",
         )  # fmt: skip
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..gates import drawn
 from ..measured import Measured, labelled
-from ..pictures import draw_refused
+from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .columns import read_press
 from .options import PressOptions
@@ -24,8 +23,7 @@ def reduce(path: Path, options: PressOptions) -> Reduced:
     """
     record = read_press(path, options)
     given, std = options.machine_compliance_m_N, options.machine_compliance_m_N_std
-    axes = ("depth [um]", "load [N]")
-    with drawn(lambda to, why: draw_refused(1e6 * record.depth, record.load, to, why, axes=axes)):
+    with drawn_if_refused(1e6 * record.depth, record.load, axes=("depth [um]", "load [N]")):
         found = reduce_press(
             record, load_std=options.load_std_N,
             compliance=None if given is None else Measured(given, std),

@@ -15,7 +15,7 @@ from .reduction import PressReduction
 def draw_press(found: PressReduction, path: Path) -> None:
     """Draw load over depth with where contact begins and ends, and what tells the stiffness."""
     made, axes = figure(1, 2, size=(12.0, 4.8))
-    size, unit = _unit(float(np.ptp(found.depth)))
+    size, unit = (1e9, "nm") if np.ptp(found.depth) < 3e-6 else (1e6, "um")
     load_size, load_unit = (1e3, "mN") if found.largest.load.value < 1.0 else (1.0, "N")
     h, p = size * (found.depth - found.zero.value), load_size * found.record.load
     largest = found.largest
@@ -27,12 +27,8 @@ def draw_press(found: PressReduction, path: Path) -> None:
         (largest.deepest, "C2", "under load"),
     ):
         curve.axvline(size * at.value, color=color, lw=1.0, label=f"{label}: {at.scaled(size)}")
-        curve.axvspan(
-            size * (at.value - 2.0 * at.std),
-            size * (at.value + 2.0 * at.std),
-            color=color,
-            alpha=0.15,
-        )
+        low, high = (size * (at.value + side * at.std) for side in (-2.0, 2.0))
+        curve.axvspan(low, high, color=color, alpha=0.15)
     machine = "machine taken off" if found.compliance is not None else "with the machine's own"
     curve.set(xlabel=f"depth [{unit}], {machine}", ylabel=f"load [{load_unit}]")
     curve.legend(fontsize=8, loc="upper left")
@@ -48,10 +44,4 @@ def draw_press(found: PressReduction, path: Path) -> None:
         slopes.plot(size * back, [1.0, 0.0], "k--", lw=1.0, label=f"{largest.stiffness} N/m")
         slopes.legend(fontsize=8, loc="upper left")
     slopes.set(xlabel=f"depth less that under load [{unit}]", ylabel="load in the largest")
-    for axis in axes.flat:
-        axis.grid(alpha=0.3)
     save(made, path)
-
-
-def _unit(span: float) -> tuple[float, str]:
-    return (1e9, "nm") if span < 3e-6 else (1e6, "um")

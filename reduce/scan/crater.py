@@ -110,7 +110,7 @@ def reduce_scan(
     depth = _without_blur(bottom.depth, bottom.laplacian, blur)
     if not depth.std < RULES.own_error * depth.value:
         raise Refused(
-            "depth", f"a crater {1e6 * depth.value:.3g} um deep +- {1e6 * depth.std:.3g} um",
+            f"a crater {1e6 * depth.value:.3g} um deep +- {1e6 * depth.std:.3g} um",
             source=scan.source, allowed="a depth that the roughness lets see, a finer scan",
         )  # fmt: skip
     cell = float(np.prod(scan.step))

@@ -1,4 +1,4 @@
-"""Profilometer files: heights on a grid or along a line, in metres."""
+"""Profilometer files: heights on a grid, in metres."""
 
 from __future__ import annotations
 
@@ -32,8 +32,6 @@ _PACKED_POINTS = 50
 # limit: points of a scan at most [-]: memory of a small machine
 _SCAN_MOST = 100_000_000
 
-_TEXT = (".csv",)
-
 
 @dataclass(frozen=True)
 class Scan:
@@ -45,23 +43,13 @@ class Scan:
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class LineScan:
-    """Heights along a line: `x`, `z`, each (n,) [m]; NaN in `z` where nothing was seen."""
-
-    x: Array
-    z: Array
-    source: str
-    notes: tuple[str, ...] = ()
-
-
 def read_scan(
     path: Path,
     *,
     unit: str | None = None,
     height_unit: str | None = None,
     step: float | None = None,
-) -> Scan | LineScan:
+) -> Scan:
     """Read any file that SurfaceTopography knows, or comma-separated numbers.
 
     Parameters
@@ -77,11 +65,10 @@ def read_scan(
     Raises
     ------
     InputError
-        The file cannot be read, has no heights, or does not say its unit or the distance of its
-        points.
+        The file cannot be read, has no heights, is a line, or does not say its unit or the
+        distance of its points.
     """
-    found = _text(path) if path.suffix.lower() in _TEXT else None
-    found = found or _known_format(path, step)
+    found = _text(path) if path.suffix.lower() == ".csv" else _known_format(path, step)
     heights = np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan)
     if heights.size < _SCAN_POINTS or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
@@ -89,13 +76,14 @@ def read_scan(
             allowed=f"{_SCAN_POINTS} or more, seen in a twentieth of the points or more",
         )  # fmt: skip
     heights = heights * _factor(height_unit or unit or found.z_unit or found.unit, path)
-    if heights.ndim == 1:
-        return LineScan(_positions(found, unit, step, path), heights, str(path))
     steps = np.full(2, step or np.nan)
     if step is None and found.step is not None:
         steps = found.step * _factor(unit or found.unit, path)
     if not np.all(np.isfinite(steps) & (steps > 0.0)):
-        raise _no_step(path)
+        raise InputError(
+            "the file does not say the distance of its points", source=str(path), key="step_m",
+            allowed="a distance above 0",
+        )  # fmt: skip
     if step is None:
         _refuse_far(float(steps.max()), path)
     return Scan(heights, steps, str(path))
@@ -103,32 +91,12 @@ def read_scan(
 
 @dataclass(frozen=True)
 class _Raw:
-    """What a file says, in its own unit: a grid with its step, or a line with its positions.
-
-    `z_unit` is that of the heights, where it is said for itself.
-    """
+    """What a file says, in its own unit; `z_unit` is that of the heights, if said for itself."""
 
     z: Array
     step: Array | None = None
-    x: Array | None = None
     unit: str | None = None
     z_unit: str | None = None
-
-
-def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) -> Array:
-    if step is not None or found.x is None:
-        if step is None:
-            raise _no_step(path)
-        return np.asarray(np.arange(found.z.size) * step)
-    if not np.all(np.diff(found.x) > 0.0):
-        row = int(np.argmin(np.diff(found.x) > 0.0)) + 1
-        raise InputError(
-            f"the position does not increase after point {row}", source=str(path),
-            allowed="increasing positions",
-        )  # fmt: skip
-    x = np.asarray((found.x - found.x[0]) * _factor(unit or found.unit, path))
-    _refuse_far(float(np.median(np.diff(x))), path)
-    return x
 
 
 def _refuse_far(step: float, path: Path) -> None:
@@ -159,9 +127,9 @@ def _known_format(path: Path, step: float | None) -> _Raw:
                 sizes = {"physical_sizes": tuple(float(n) for n in channel.nb_grid_pts)}
             _check_claim(channel.nb_grid_pts, path)
             found = channel.topography(**sizes)
-            z = np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan)
             if found.dim == 1:
-                return _Raw(z, x=np.asarray(found.positions(), dtype=np.float64), unit=found.unit)
+                raise _a_line(path)
+            z = np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan)
             return _Raw(z, step=np.array(found.physical_sizes) / z.shape, unit=found.unit)
     except InputError:
         raise
@@ -183,8 +151,8 @@ def _check_claim(points: tuple[int, ...], path: Path) -> None:
         )  # fmt: skip
 
 
-def _text(path: Path) -> _Raw | None:
-    """Read a table of numbers: a grid, two columns of a line, or three of a regular grid."""
+def _text(path: Path) -> _Raw:
+    """Read a table of numbers: a grid, or three columns of a regular one."""
     lines = numbered_lines(path.read_bytes(), str(path))
     table = text_rows([line for _, line in lines], str(path))
     while all(len(row) > 1 and not row[-1] for row in table):
@@ -212,13 +180,13 @@ def _text(path: Path) -> _Raw | None:
     said = [unit_in(name) for name in names] if len(names) == width else [""]
     units = [said[k] if said[k] in LENGTH else None for k in (0, -1)]
     if width == 2:
-        return _Raw(grid[:, 1], x=grid[:, 0], unit=units[0], z_unit=units[1])
+        raise _a_line(path)
     if width == 3:
         return replace(_regular(grid, path), unit=units[0], z_unit=units[1])
     if min(grid.shape) < 4:
         raise InputError(
             f"{grid.shape[0]} rows of {grid.shape[1]} numbers", source=str(path),
-            allowed="a grid of heights, or columns x, z or x, y, z",
+            allowed="a grid of heights, or columns x, y, z",
         )  # fmt: skip
     return _Raw(grid.T)
 
@@ -251,8 +219,8 @@ def _factor(unit: str | None, path: Path) -> float:
     return metres(unit or "", source=str(path), allowed=LENGTH)
 
 
-def _no_step(path: Path) -> InputError:
+def _a_line(path: Path) -> InputError:
     return InputError(
-        "the file does not say the distance of its points", source=str(path), key="step_m",
-        allowed="a distance above 0",
+        "heights along a line", source=str(path),
+        allowed="a map; a line, as x_m and z_m, belongs into profiles/ of a set, which levels it",
     )  # fmt: skip

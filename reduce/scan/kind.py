@@ -1,4 +1,4 @@
-"""A scan of a crater, a profile or a tip, read, levelled, measured and drawn."""
+"""A scan of a crater or a tip, read, levelled, measured and drawn."""
 
 from __future__ import annotations
 
@@ -7,19 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.errors import InputError
 from ..measured import Measured
 from ..reduced import Reduced
 from .ball import reduce_ball
 from .crater import Crater, reduce_scan
-from .file import LineScan, read_scan
-from .line import reduce_line
+from .file import Scan, read_scan
 from .options import ScanOptions
-from .picture import draw_ball, draw_crater, draw_groove
+from .picture import draw_ball, draw_crater
 
 
 def reduce(path: Path, options: ScanOptions) -> Reduced:
-    """Measure the deepest crater of a scan or a profile, or the radius of a ball.
+    """Measure the deepest crater of a scan, or the radius of a ball.
 
     Raises
     ------
@@ -34,13 +32,6 @@ def reduce(path: Path, options: ScanOptions) -> Reduced:
     scale = Measured(options.height_scale, options.height_scale_std)
     if options.shows == "ball":
         return _ball(path, scan, options)
-    if isinstance(scan, LineScan):
-        line = reduce_line(scan, height_scale=scale)
-        values = {"permanent_depth_m": line.depth, "crater_width_m": line.width}
-        return Reduced(
-            source=path, values=values, trials=line.trials(), notes=line.notes,
-            draw=lambda to: draw_groove(line, to),
-        )  # fmt: skip
     found = reduce_scan(
         scan, level=options.level, height_scale=scale,
         blur=Measured(options.blur_m, options.blur_m_std),
@@ -51,10 +42,8 @@ def reduce(path: Path, options: ScanOptions) -> Reduced:
     )  # fmt: skip
 
 
-def _ball(path: Path, scan: object, options: ScanOptions) -> Reduced:
-    if isinstance(scan, LineScan):
-        raise InputError("a line profile", source=str(path), key="shows", allowed="a map of a ball")
-    found = reduce_ball(scan, reach=options.reach_m)  # type: ignore[arg-type]
+def _ball(path: Path, scan: Scan, options: ScanOptions) -> Reduced:
+    found = reduce_ball(scan, reach=options.reach_m)
     # a radius is a length squared over a height
     radius = found.radius.over(Measured(options.height_scale, options.height_scale_std))
     values = {

@@ -1,4 +1,4 @@
-"""Pictures of a scan: crater with outline and sections, profile, or ball with what is left."""
+"""Pictures of a scan: crater with outline and sections, or ball with what is left."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from ...core.output import figure
 from ..pictures import save
 from .ball import ScannedBall
 from .crater import Crater
-from .line import Groove
 
 UM = 1e6
 
@@ -39,7 +38,6 @@ def draw_crater(result: Crater, path: Path) -> None:
         f"{told or 'its walls are too rough to tell its size'}",
     )  # fmt: skip
     axis.legend()
-    axis.grid(alpha=0.3)
     save(made, path)
 
 
@@ -75,28 +73,6 @@ def _map(axis: Any, result: Crater, made: Any) -> None:
     made.colorbar(image, ax=axis)
 
 
-def draw_groove(result: Groove, path: Path) -> None:
-    """Draw the levelled profile with depth and width, and the part it was levelled on."""
-    made, axes = figure(1, 2, size=(13.0, 5.0))
-    s, z = UM * result.line.s, UM * result.line.z
-    known = bool(np.isfinite(result.width.value))
-    width = UM * result.width.value if known else 0.2 * np.ptp(s)
-    known_width = f", width {result.width.scaled(UM)} um" if known else ""
-    for axis in axes[0]:
-        axis.plot(s, z, "k-", lw=0.7)
-        axis.plot(s[result.clear], z[result.clear], "g.", ms=1, label="levelled on")
-        axis.axhline(0.0, color="k", lw=0.6)
-        axis.axhline(-UM * result.depth.value, color="C3", lw=0.8, ls="--")
-        axis.set(xlabel="distance from the deepest point [um]", ylabel="height [um]")
-        axis.grid(alpha=0.3)
-    axes[0, 0].legend()
-    axes[0, 1].set(
-        xlim=(-1.5 * width, 1.5 * width),
-        title=f"depth {result.depth.scaled(UM)} um" + known_width,
-    )
-    save(made, path)
-
-
 def draw_ball(result: ScannedBall, path: Path) -> None:
     """Draw what is left of the heights when the sphere is taken off."""
     made, axes = figure(1, 2, size=(12.0, 5.5))
@@ -115,5 +91,4 @@ def draw_ball(result: ScannedBall, path: Path) -> None:
         xlabel="distance from the top [um]", ylabel="above the sphere [nm]",
         ylim=(-2 * limit, 2 * limit), title=f"radius {result.radius.scaled(UM)} um",
     )  # fmt: skip
-    axes[0, 1].grid(alpha=0.3)
     save(made, path)

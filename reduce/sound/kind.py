@@ -59,7 +59,7 @@ def check_level(sound: Sound) -> None:
     """
     if sound.clipped > RULES.full_scale:
         raise Refused(
-            "full-scale", f"{sound.clipped:.0%} of the samples are at full scale",
+            f"{sound.clipped:.0%} of the samples are at full scale",
             source=sound.source, allowed="a recording that only contacts drive there: less gain",
         )  # fmt: skip
 

@@ -3,64 +3,44 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from pathlib import Path
 
-from ...core.arrays import Array
-from ..bounces.bounce import Bounced
+import numpy as np
+
 from ..bounces.contacts import told_bounces
-from ..bounces.fall import Ball
 from ..bounces.track import Track
 from ..measured import Measured, Trial, labelled, labels
+from ..pictures import drawn_if_refused
+from ..reduced import Reduced
+from .file import Columns
+from .options import TableOptions
+from .picture import draw_heights
+from .series import series_of
 
 
-@dataclass(frozen=True)
-class HeightReduction:
-    """Contacts in a track of heights, and the rows that they make."""
-
-    track: Track
-    found: Bounced
-    values: dict[str, Measured]
-    trials: tuple[Trial, ...]
-
-
-def reduce_heights(
-    time: Array,
-    height: Array,
-    *,
-    metres: float | None,
-    std: float,
-    ball: Ball,
-    source: str,
-    contact: Measured | None = None,
-) -> HeightReduction:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Fit the flights of a track and read the speeds at its contacts.
-
-    Parameters
-    ----------
-    time, height
-        (n,): increasing [s], upwards [the table's unit].
-    metres
-        Size of that unit [m]; None takes it from the acceleration of the fall.
-    std
-        Standard deviation of a height that is believed at least [unit].
-    ball
-        Gravity, and the drag as far as it is known.
-    contact
-        Duration of a contact [s], if it is known.
-    source
-        The file.
 
     Raises
     ------
     InputError
         No contact with flight on both sides, or no fall by gravity.
     """
-    track = Track(time, height, floor=std)
-    scale = None if metres is None else Measured(metres, 0.0)
-    found = told_bounces(
-        track, ball, metres=scale, contact=contact, source=source,
-        allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
-    )  # fmt: skip
+    series = series_of(table, options)
+    time, column = series.time, series.column
+    said = table.unit(column) if options.value_unit == "file" else options.value_unit
+    metres = None  # then the fall tells the size of the unit
+    if said != "px":
+        metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
+    height = series.value if options.upwards == "up" else -series.value
+    track = Track(time, height, floor=options.value_std)
+    with drawn_if_refused(time, series.value, axes=("time [s]", "height")):
+        found = told_bounces(
+            track, options.ball, metres=None if metres is None else Measured(metres, 0.0),
+            contact=Measured(lasts, 0.0) if (lasts := options.contact_time_s) else None,
+            source=str(path),
+            allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
+        )  # fmt: skip
     trials = tuple(
         Trial(found.row(k), found.notes, trace=found.trace(k, time, height), label=label)
         for k, label in enumerate(labels(len(found.bounces)))
@@ -70,4 +50,9 @@ def reduce_heights(
         values["unit_m"] = found.scale.metres
     if metres is not None and math.isfinite(found.fall.value):
         values["fall_acceleration_m_s2"] = found.fall.scaled(metres)
-    return HeightReduction(track, found, values, trials)
+    return Reduced(
+        source=path, values=values, trials=trials,
+        notes=found.notes + series.notes + series.missed_notes(": they are left out"),
+        draw=lambda to: draw_heights(track, found, to),
+        noise={"frame_rate_hz": float(1.0 / np.median(np.diff(time)))},
+    )  # fmt: skip

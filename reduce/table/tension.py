@@ -15,8 +15,7 @@ from ...core.rules import RULES as CORE
 from ..gates import Refused
 from ..measured import Measured
 from ..rules import RULES
-from ..shared.units import LENGTH, UNITS
-from .file import Columns
+from ..shared.units import UNITS
 from .rise import elastic_rise
 
 # limit: strain and stress that no metal was measured at [-, Pa]; a slip of the unit
@@ -24,10 +23,6 @@ _NO_METAL = (10.0, 1e12)
 
 # limit: rows of a curve that is written [-]: a screen or two
 _TENSION_KEPT = 60
-
-_AREA_UNITS = {
-    f"{unit}{square}": size**2 for unit, size in LENGTH.items() for square in ("2", "^2", "²")
-} | {f"sq {unit}": size**2 for unit, size in LENGTH.items()}
 
 
 @dataclass(frozen=True)
@@ -85,7 +80,7 @@ def reduce_tension(
     flow = _rows(strain - line.zero - stress / line.slope, stress, source)
     if E is None and (wrong := _no_metal(rise, flow.strength)):
         raise Refused(
-            "modulus", wrong, source=source, key="E_Pa",
+            wrong, source=source, key="E_Pa",
             allowed="strain of the specimen alone, without the machine's give and slack, or the "
             "metal's modulus",
         )  # fmt: skip
@@ -178,7 +173,7 @@ def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
     if fall > RULES.cycle_depth * stress.max() and (again or deep) and not back:
         as_elastic = " as the metal does elastically" if again else ""
         raise Refused(
-            "slip", f"the load falls by {fall / before[low]:.0%} at a strain of {strain[low]:.3g} "
+            f"the load falls by {fall / before[low]:.0%} at a strain of {strain[low]:.3g} "
             f"and rises again{as_elastic}", source=source,
             allowed="a specimen that does not slip in its grips, and a gauge that stays on it",
         )  # fmt: skip
@@ -241,61 +236,3 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
     first = np.concatenate([[0.0], strain]), np.concatenate([[flow[0]], flow])
     nothing = np.full(first[0].size, np.nan)
     return MeasuredFlow(first[0], first[1], nothing, nothing)
-
-
-def stress_unit(table: Columns, column: int, *, given: str, area_mm2: float | None) -> float:
-    """Return the stress that one of a column's unit is worth [Pa].
-
-    A column of loads is divided by the specimen's area: as given, or from the header's line
-    `Area` or `Diameter`.
-
-    Raises
-    ------
-    InputError
-        The unit is none of stress or force, or no area is known.
-    """
-    said = table.unit(column) if given == "file" else given
-    force = UNITS["force"].get(said)
-    if force is None:
-        return table.factor(column, "stress", given=given, key="value_unit")
-    area = None if area_mm2 is None else 1e-6 * area_mm2
-    for word, units in (("area", _AREA_UNITS), ("diameter", LENGTH)):
-        found = table.heading.quantity(word)
-        if area is None and found is not None and found[1] in units:
-            size = found[0] * units[found[1]]
-            area = size if word == "area" else 0.25 * math.pi * found[0] ** 2 * units[found[1]] ** 2
-    if area is None or not area > 0.0:
-        raise InputError(
-            f"column {table.names[column]!r} holds a load, and the file names no area",
-            source=table.source, key="area_mm2", allowed="the specimen's cross-section",
-        )  # fmt: skip
-    return force / area
-
-
-def strain_unit(table: Columns, column: int, *, given: float | None) -> float:
-    """Return the strain that one of a column's unit is worth.
-
-    A column of extensions is divided by the gauge length: as given in mm, or from the header's line
-    `Gauge length` or `Gage length`.
-
-    Raises
-    ------
-    InputError
-        A length without a gauge length.
-    """
-    unit = table.unit(column)
-    if unit == "%":
-        return 0.01
-    if unit not in LENGTH:
-        return 1.0
-    length = None if given is None else 1e-3 * given
-    for word in ("gauge length", "gage length"):
-        found = table.heading.quantity(word)
-        if length is None and found is not None and found[1] in LENGTH:
-            length = found[0] * LENGTH[found[1]]
-    if length is None or not length > 0.0:
-        raise InputError(
-            f"column {table.names[column]!r} holds an extension, and the file names no gauge "
-            "length", source=table.source, key="gauge_length_mm", allowed="the extensometer's",
-        )  # fmt: skip
-    return LENGTH[unit] / length

@@ -33,7 +33,6 @@ def draw_tip(result: TipReduction, picture: npt.NDArray[np.uint8], path: Path) -
     plot.plot(at[shown], result.residual[shown], "rx", ms=4)
     plot.axhline(0.0, color="k", lw=0.5)
     plot.set(xlabel="angle from the middle of the tip [deg]", ylabel="outside the circle [pixel]")
-    plot.grid(alpha=0.3)
     size = result.tip_radius
     known = np.isfinite(size.value)
     plot.set_title(f"tip radius {size.scaled(1e3)} mm" if known else f"radius {result.radius} px")

@@ -46,8 +46,6 @@ def draw_video(result: VideoReduction, clip: Clip, path: Path) -> None:
     else:
         axes[1, 2].plot(time, result.column, "k.", ms=2)
         axes[1, 2].set(xlabel="time [ms]", ylabel="column [pixel]")
-    for axis in axes[1]:
-        axis.grid(alpha=0.3)
     save(made, path)
 
 

@@ -80,8 +80,8 @@ EXACT = {
     "reduce/scan/level.py": "LEVELS",
     "reduce/scan/picture.py": "UM",
     "reduce/table/cells.py": "OUT_OF_RANGE DAY",
+    "reduce/table/leeb.py": "_LEEB_SPEED",
     "reduce/table/sheet/cell.py": "_ICE",
-    "reduce/table/trials.py": "_LEEB_SPEED",
     "start/measured.py": "_STANDARD_GRAVITY",
 }
 

@@ -21,7 +21,6 @@ from ...reduced import Reduced
 from ..file import cells_of, decoded, is_book
 from ..packed import TABLE_BYTES
 from ..picture import draw_trials
-from ..trials import TrialsReduction
 from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of
 from .headers import Head, columns_of, given_columns, head_of
@@ -90,10 +89,10 @@ class Sheet:
             for n in (across, up)
         )
         values = {"trials": Measured(float(len(self.trials)), math.nan)}
-        found = TrialsReduction(values, self.trials, notes, (across, x), (up, y))
         return Reduced(
-            path, values, self.trials, lambda to: draw_trials(found, to), notes, self.striker
-        )
+            path, values, self.trials, lambda to: draw_trials((across, x), (up, y), to), notes,
+            self.striker,
+        )  # fmt: skip
 
 
 def read_sheet(

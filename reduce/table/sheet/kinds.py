@@ -126,8 +126,8 @@ def nearest(header: str) -> str:
     words, quantity = named(header) or bare(header), quantity_of(said_unit(header))
     kinds = [k for k in KINDS if k.quantity != "text" and quantity in ("", k.quantity)]
     likeness = {k: sum(_like(part, words) for part in k.parts) / len(k.parts) for k in kinds}
-    best = max(likeness, key=lambda kind: likeness[kind])
-    if not likeness[best]:
+    best = max(likeness, key=lambda kind: likeness[kind], default=None)
+    if best is None or not likeness[best]:
         return ""
     unit = "" if quantity or best.quantity == "number" else " UNIT"
     return f"{best.said}? --column {f'{without_unit(header).strip()}={best.said}{unit}'!r}"

@@ -1,7 +1,6 @@
 """Gates: what a reduction sees passes, widens or refuses; records of kinds that went wrong."""
 
-from dataclasses import fields, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,15 +10,13 @@ from dentscope.reduce.bounces import contacts
 from dentscope.reduce.bounces.contacts import find_bounces
 from dentscope.reduce.bounces.fall import UNKNOWN
 from dentscope.reduce.bounces.track import Track
-from dentscope.reduce.gates import GATES, Refused, is_restitution
+from dentscope.reduce.gates import Refused, is_restitution
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.measured import Measured
-from dentscope.reduce.rules import RULES
 from dentscope.reduce.table.pulse import find_pulse
 from dentscope.studies.synthetic.tracks import TrackTruth, seen
 from made_records import T, half_sine, recorded, run
 
-ROOT = Path(__file__).parents[3]
 _TRACK = seen(TrackTruth(rate=500.0, noise=0.1, restitution=0.8))
 BOUNCES = Track(_TRACK.time, _TRACK.height), UNKNOWN
 WIDE = half_sine(long=8e-3, noise=0.0)
@@ -29,41 +26,24 @@ def noise(std=1.0, seed=3):
     return np.random.default_rng(seed).normal(0.0, std, T.size)
 
 
-def table_of_gates() -> str:
-    """The gates as a table in Markdown, the limits from the register."""
-    rows = ["| of | looked at | limit | effect |", "| --- | --- | --- | --- |"]
-    for gate in GATES.values():
-        limit = f"{getattr(RULES, gate.limit):g}" if gate.limit else "-"
-        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} |")
-    return "\n".join(rows)
-
-
-def test_every_gate_has_a_limit_of_the_register_and_its_line_in_the_docs():
-    names = {f.name for f in fields(RULES)}
-    assert all(gate.limit in names or not gate.limit for gate in GATES.values())
-    assert all(f.metadata["meaning"] and f.metadata["source"] for f in fields(RULES))
-    assert table_of_gates() in (ROOT / "docs/reduce.md").read_text()
-
-
 @pytest.mark.parametrize(
-    ("gate", "record"),
+    ("look", "record"),
     [
-        ("plateau", np.minimum(WIDE, 500.0) + noise()),
-        ("plateau", np.minimum(WIDE, 500.0 + 4.0 * noise(seed=5)) + noise()),
-        ("lopsided", 800.0 * np.exp(-np.clip(T - 0.02, 0.0, 1.0) / 4e-3)
+        ("flat over", np.minimum(WIDE, 500.0) + noise()),
+        ("flat over", np.minimum(WIDE, 500.0 + 4.0 * noise(seed=5)) + noise()),
+        ("an edge: one", 800.0 * np.exp(-np.clip(T - 0.02, 0.0, 1.0) / 4e-3)
          * np.clip((T - 0.0197) / 3e-4, 0.0, 1.0) + noise()),
-        ("train", sum(half_sine(at=a, long=2e-3, peak=p, noise=0.0) for a, p in
+        ("like pulses", sum(half_sine(at=a, long=2e-3, peak=p, noise=0.0) for a, p in
                       ((0.004, 700.0), (0.012, 780.0), (0.02, 800.0), (0.028, 760.0),
                        (0.036, 750.0))) + noise()),
-        ("noise", noise()),
-        ("step", np.where(T > 0.02, 800.0, 0.0) + noise()),
+        ("times the noise", noise()),
+        ("a step", np.where(T > 0.02, 800.0, 0.0) + noise()),
     ],
     ids=["clipped", "soft-clipped", "decay", "steps", "noise", "step"],
 )  # fmt: skip
-def test_what_is_no_whole_impact(gate, record):
-    with pytest.raises(Refused) as told:
+def test_what_is_no_whole_impact(look, record):
+    with pytest.raises(Refused, match=look):
         find_pulse(T, record, source="record")
-    assert told.value.gate is GATES[gate] or gate in ("lopsided", "step")
 
 
 def test_missing_rows_within_a_pulse_are_a_hole(tmp_path):

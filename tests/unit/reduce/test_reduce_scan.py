@@ -67,20 +67,13 @@ def test_a_scan_of_a_hundred_metres_is_refused():
         reduce(REAL / "nms-1.nms", Options())
 
 
-def test_a_line_of_metres_is_refused(tmp_path):
-    path = tmp_path / "line.csv"
-    rows = "".join(f"{0.5 * k},{0.001 * (k % 7)}\n" for k in range(200))
-    path.write_text("x_m,z_m\n" + rows)
-    with pytest.raises(InputError, match=r"0\.5 m apart"):
-        reduce(path, Options(unit="m"))
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         ("", "no"),
         ("a,b\nc,d\n", ""),
         ("1,2,3\n4,5\n", ""),
+        ("x_m,z_m\n" + "0.1,0.2\n" * 9, "belongs into profiles/ of a set"),
     ],
 )
 def test_a_file_that_is_no_scan_is_one_line(tmp_path, capsys, text, said):

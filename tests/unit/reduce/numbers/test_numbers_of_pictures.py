@@ -24,7 +24,6 @@ from dentscope.reduce.scan.ball import reduce_ball
 from dentscope.reduce.scan.bottom import _floor, find_bottom
 from dentscope.reduce.scan.file import Scan, _refuse_far
 from dentscope.reduce.scan.level import Levelled, _outside
-from dentscope.reduce.scan.line import _bottom, _levelled
 from dentscope.reduce.scan.walls import _wall_end
 from dentscope.reduce.sound.file import Sound
 from dentscope.reduce.sound.kind import check_level
@@ -239,21 +238,6 @@ def test_a_twentieth_of_the_points_is_left_to_level_on(left, few) -> None:
     seen[-1, -1] = 1.0 if left == 500 else 0.0
     scan = SimpleNamespace(z=np.where(seen, 0.0, np.nan), source="")
     assert refused(lambda: _outside(crater, scan)) == few
-
-
-def test_levelling_a_line_leaves_nine_tenths_of_the_half_width_out() -> None:
-    """A groove of 20 points: itself and 19 to both sides."""
-    z = np.zeros(220)
-    z[100:120] = -1.0
-    clear = _levelled(np.arange(220.0), z, "")[2]
-    assert np.flatnonzero(~clear)[[0, -1]].tolist() == [81, 138]
-
-
-@pytest.mark.parametrize(("reach", "few"), [(5.4, True), (6.1, False)])
-def test_the_floor_of_a_line_has_twelve_points(reach, few) -> None:
-    """Eleven and thirteen points lie within the reach."""
-    x = np.arange(-20.0, 21.0)
-    assert refused(lambda: _bottom(x, x**2, 20, reach, "")) == few
 
 
 def test_a_wall_is_followed_from_45_to_8_hundredths_of_the_depth() -> None:

@@ -13,7 +13,7 @@ from dentscope.reduce.table.cells import (
 )
 from dentscope.reduce.table.file import columns_of
 from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
-from dentscope.reduce.table.level import level_before
+from dentscope.reduce.table.pulse.level import level_before
 from made_records import RATE, T, half_sine, run, table
 from scipy.signal import lsim
 

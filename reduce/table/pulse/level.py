@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import Array
-from ..rules import RULES
-from ..shared.regression import robust_std
+from ....core.arrays import Array
+from ...rules import RULES
+from ...shared.regression import robust_std
 
 
 class Level(NamedTuple):

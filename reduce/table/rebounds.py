@@ -1,9 +1,9 @@
-"""Tables of readings: rebound heights beside drop heights, and Leeb numbers."""
+"""A table of rebound heights beside drop heights."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -11,47 +11,28 @@ from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
+from ..reduced import Reduced
 from ..rules import RULES
 from ..shared.units import LENGTH, quantity_of
 from .file import Columns
+from .options import TableOptions
+from .picture import draw_trials
 
 
-@dataclass(frozen=True)
-class TrialsReduction:
-    """Rows that a table makes, and what a picture shows of them: two named columns (n,)."""
-
-    values: dict[str, Measured]
-    trials: tuple[Trial, ...]
-    notes: tuple[str, ...]
-    x: tuple[str, Array]
-    y: tuple[str, Array]
-
-
-def reduce_rebounds(
-    table: Columns, *, value: str, unit: str, std: float, ball: Ball
-) -> TrialsReduction:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return a trial for each rebound height beside a drop height.
 
-    Parameters
-    ----------
-    table
-        Drop heights in the column `value`, rebound heights of the repeats in all columns after it.
-    value
-        Column of the drop heights; empty for the one that is named so.
-    unit
-        Of all of them, or `"file"`.
-    std
-        Standard deviation of a height [that unit].
-    ball
-        What flies: with drag it lands slower than it was dropped.
+    The drop heights stand in a column that is named so, or given; rebounds of the repeats in all
+    columns of lengths after it. With drag a ball lands slower than it was dropped.
 
     Raises
     ------
     InputError
         No rebound heights, or one above its drop.
     """
-    heights, metres = _heights(table, value, unit)
-    error = std * metres
+    value = options.value if "value" in options.model_fields_set else ""
+    heights, metres = _heights(table, value, options.value_unit)
+    error, ball = options.value_std * metres, options.ball
     trials: list[Trial] = []
     for row, (drop, *rebounds) in enumerate(heights, start=1):
         if not np.isfinite(drop):
@@ -73,58 +54,9 @@ def reduce_rebounds(
         same = ratios[speeds == speed]
         spread = float(np.std(same, ddof=1) / math.sqrt(same.size)) if same.size > 1 else math.nan
         values[f"restitution_at_{speed:.4g}_m_s"] = Measured(float(same.mean()), spread)
-    return TrialsReduction(
-        values, tuple(trials), (f"{len(trials)} rebounds",),
-        ("impact speed [m/s]", speeds), ("restitution", ratios),
-    )  # fmt: skip
-
-
-_LEEB_SPEED = 2.05
-"""Approach of the body of a device D [m/s] (ISO 16859-1)."""
-
-
-def reduce_leeb(table: Columns, *, value: str, std: float, speed: float | None) -> TrialsReduction:
-    """Return a trial for each Leeb number, a thousand times the restitution of the device's ball.
-
-    Parameters
-    ----------
-    table
-        Numbers in the column `value` and in all after it.
-    value
-        Their first column.
-    std
-        Standard deviation of a number.
-    speed
-        Approach [m/s]; None takes that of device D.
-
-    Raises
-    ------
-    InputError
-        No number, or one that is not between 0 and 1000.
-    """
-    first = table.find(value, key="value")
-    approach = Measured(speed or _LEEB_SPEED, 0.0)
-    trials, wrong = [], []
-    for row, numbers in enumerate(table.values[:, first:], start=1):
-        for k, number in enumerate(numbers[np.isfinite(numbers)], start=1):
-            if not 0.0 < number < 1000.0:
-                wrong.append(InputError(
-                    f"{number:g}", source=table.source, key=f"row {row} of the numbers",
-                    allowed="a Leeb number between 0 and 1000",
-                ))  # fmt: skip
-            ratio = Measured(float(number) / 1e3, std / 1e3)
-            seen = {"impact_speed_m_s": approach, "restitution": ratio}
-            trials.append(Trial(seen, label=f"{row}-{k}"))
-    if wrong:
-        raise InputErrors(tuple(wrong))
-    if not trials:
-        raise InputError("no Leeb number", source=table.source, allowed="numbers of 0 to 1000")
-    ratios = np.array([t.observables["restitution"].value for t in trials])
-    spread = float(np.std(ratios, ddof=1)) if ratios.size > 1 else math.nan
-    notes = () if speed else (f"approach {_LEEB_SPEED} m/s, as of device D",)
-    return TrialsReduction(
-        {"restitution": Measured(float(ratios.mean()), spread / math.sqrt(ratios.size))},
-        tuple(trials), notes, ("number", np.arange(1.0, ratios.size + 1)), ("restitution", ratios),
+    return Reduced(
+        source=path, values=values, trials=tuple(trials), notes=(f"{len(trials)} rebounds",),
+        draw=lambda to: draw_trials(("impact speed [m/s]", speeds), ("restitution", ratios), to),
     )  # fmt: skip
 
 

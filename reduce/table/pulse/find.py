@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.arrays import Array, Mask
-from ...core.errors import InputError
-from ..gates import Refused
-from ..measured import Measured
-from ..rules import RULES
-from ..shared.flank import meets_zero
+from ....core.arrays import Array, Mask
+from ....core.errors import InputError
+from ...gates import Refused
+from ...measured import Measured
+from ...rules import RULES
+from ...shared.flank import meets_zero
 from .area import Area, area_of
 from .level import Level, level_before, wide
 from .ringing import ringing_within
@@ -86,7 +86,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     noise, clear = level.noise, sign * value - level.mean
     if not clear[top] > RULES.pulse_over_noise * noise:
         raise Refused(
-            "noise", f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
+            f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
             source=source, allowed=f"a pulse of {RULES.pulse_over_noise:g} times the noise or more",
         )  # fmt: skip
     notes = []
@@ -98,7 +98,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     shape = shape_of(time, clear, top, (start.value, end.value), noise, source=source)
     # 33 % of a half-sine lie on a flank from 6 to 90 %, more than twice as many as up to 45 %
     if sheer(clear, top) and 2 * shape.above_half >= RULES.whole_flank:
-        raise looks_like("edge", "an edge: one side has no flank", source)
+        raise looks_like("an edge: one side has no flank", source)
     _both_flanks(shape, (used_a, used_b), (peak_time - start.value, end.value - peak_time), source)
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
@@ -125,7 +125,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     inside = (time >= start.value) & (time <= end.value)
     if inside[0] or inside[-1]:
         raise Refused(
-            "ends", "the pulse runs over an end of the record", source=source,
+            "the pulse runs over an end of the record", source=source,
             allowed="a pulse that rises from its level and comes back to it",
         )  # fmt: skip
     if abs(shape.level_after) > 0.02:
@@ -165,11 +165,11 @@ def _both_flanks(
 ) -> None:
     """Refuse an edge: a side without samples, or that takes no time beside the other."""
     if min(used) == 0 and max(shape.above_half, *used) >= RULES.whole_flank:
-        raise looks_like("edge", "an edge: one side has no flank", source)
+        raise looks_like("an edge: one side has no flank", source)
     flanks = sorted(times)
     if shape.above_half >= RULES.whole_flank and flanks[1] > RULES.lopsided * max(flanks[0], 0.0):
         raise looks_like(
-            "lopsided", f"an edge: one flank takes {flanks[1] / max(flanks[0], 1e-300):.2g} times "
+            f"an edge: one flank takes {flanks[1] / max(flanks[0], 1e-300):.2g} times "
             "as long as the other", source,
         )  # fmt: skip
 
@@ -178,9 +178,7 @@ def _timed(start: Measured, end: Measured, source: str) -> None:
     """Refuse a pulse whose ends are not known."""
     lasts = end.minus(start)
     if lasts.std > RULES.own_error * lasts.value:
-        raise Refused(
-            "duration", f"a contact of {lasts} s", source=source, allowed="ends that can be seen"
-        )
+        raise Refused(f"a contact of {lasts} s", source=source, allowed="ends that can be seen")
 
 
 def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, float]:

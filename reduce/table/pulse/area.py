@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from ...core.arrays import Array
-from ..measured import Measured
-from ..rules import RULES
+from ....core.arrays import Array
+from ...measured import Measured
+from ...rules import RULES
 from .level import Level
 from .shape import Shape
 

@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import Array, Indices, Mask
-from ..gates import Refused
-from ..rules import RULES
+from ....core.arrays import Array, Indices, Mask
+from ...gates import Refused
+from ...rules import RULES
 
 
 class Shape(NamedTuple):
@@ -64,14 +64,14 @@ def shape_of(
     flat = _flat_top(clear, top)
     if flat:
         raise Refused(
-            "clipped", f"clipped: {flat} samples stand at the largest value", source=source,
+            f"clipped: {flat} samples stand at the largest value", source=source,
             allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
     if not ends[1] > ends[0]:
-        raise looks_like("ends", "a ramp: it ends before it begins", source)
+        raise looks_like("a ramp: it ends before it begins", source)
     half = int(_run(clear > 0.5 * peak, top).size)
     if half < RULES.fewest_above_half:
-        raise looks_like("spike", f"a spike: {half} samples above half of its peak", source)
+        raise looks_like(f"a spike: {half} samples above half of its peak", source)
     long = ends[1] - ends[0]
     after = (time > ends[1] + 0.5 * long) & (time < ends[1] + 5.0 * long)
     rest = float(np.median(clear[after] if after.sum() >= 5 else clear[-5:])) / peak
@@ -82,11 +82,11 @@ def shape_of(
     chance = (1.0 + RULES.by_chance * math.sqrt(2.0 / max(int(soon.sum()), 1))) * noise**2
     unrest = math.sqrt(square - noise**2) / peak if square > chance else 0.0
     if abs(rest) > RULES.swing:
-        raise looks_like("step", f"a step: {rest:+.0%} of the peak stays", source)
+        raise looks_like(f"a step: {rest:+.0%} of the peak stays", source)
     wide = _wide(clear, top)
     if half >= RULES.whole_flank and wide > RULES.plateau:
         raise Refused(
-            "plateau", f"its top is flat over {wide:.0%} of its width at half of the peak: clipped",
+            f"its top is flat over {wide:.0%} of its width at half of the peak: clipped",
             source=source, allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
     reach = RULES.beside * long
@@ -94,7 +94,7 @@ def shape_of(
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak, RULES.swing) - 1
     if below > RULES.swing and swings >= RULES.swings:
-        raise looks_like("swings", f"an oscillation: {swings} other half-waves beside it", source)
+        raise looks_like(f"an oscillation: {swings} other half-waves beside it", source)
     least = max(RULES.ringing, RULES.pulse_over_noise * noise / peak)
     # what does not swing back is the level of a sensor that has lost its zero
     late = beside & (time > ends[1])
@@ -120,7 +120,7 @@ def _single(
     longer = flights[1:] > RULES.same_time * flights[:-1]
     regular = flights[-1] > flights[0] / RULES.same_time
     if regular or longer.any() or (np.diff(heights) > RULES.same_height).any():
-        raise looks_like("train", f"{at.size} like pulses that fade as no bounces do", source)
+        raise looks_like(f"{at.size} like pulses that fade as no bounces do", source)
 
 
 def _wide(clear: Array, top: int) -> float:
@@ -132,10 +132,10 @@ def _wide(clear: Array, top: int) -> float:
     return float(np.mean(ordered > 0.95 * peak))
 
 
-def looks_like(gate: str, what: str, source: str) -> Refused:
+def looks_like(what: str, source: str) -> Refused:
     """Return the refusal of a record that shows something else than a pulse."""
     return Refused(
-        gate, f"no impact: looks like {what}", source=source,
+        f"no impact: looks like {what}", source=source,
         allowed="a pulse that rises from zero and comes back (see --first-s, --last-s, --value)",
     )  # fmt: skip
 

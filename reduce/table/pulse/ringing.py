@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from ...core.arrays import Array
-from ..rules import RULES
-from ..shared.regression import correlation_factor, unit_covariance
+from ....core.arrays import Array
+from ...rules import RULES
+from ...shared.regression import correlation_factor, unit_covariance
 
 
 class RingingWithin(NamedTuple):
