@@ -28,10 +28,12 @@ def test_priors_add_to_one_and_a_wrong_number_is_as_probable_as_physics() -> Non
     assert PRIORS["inputs"] >= PRIORS["mechanisms"]
 
 
-def test_a_scatter_of_e_times_the_noise_is_a_little_more_likely_varied_than_misjudged() -> None:
-    """Even up to e^5 in ln: 1/5; a noise misjudged by 0.5 in ln is two deviations off."""
-    given = SimpleNamespace(drifts=(), followed=(), scatters=(Scatter("restitution", math.e, 9),))
-    misjudged = math.exp(-2.0) / (0.5 * math.sqrt(2.0 * math.pi))
+@pytest.mark.parametrize("times", [0.4, 1.0, 4.0])
+def test_a_scatter_was_varied_or_its_noise_misjudged(times) -> None:
+    """Even up to e^5 in ln: 1/5; a noise misjudged by 0.5 in ln is twice `times` deviations off."""
+    scatter = Scatter("restitution", math.exp(times), 9)
+    given = SimpleNamespace(drifts=(), followed=(), scatters=(scatter,))
+    misjudged = math.exp(-2.0 * times**2) / (0.5 * math.sqrt(2.0 * math.pi))
     assert odd_repeats(given) == pytest.approx(math.log(0.2 / misjudged))
 
 
@@ -54,8 +56,9 @@ def test_forms_differ_fourfold_and_laws_twofold() -> None:
 
 def test_a_form_is_off_alike_over_twice_the_spread_of_the_conditions(toy) -> None:
     """Nine tenths of it smooth: exp(-(2/2)^2/2) between places two deviations apart."""
-    root = form_error(toy.problem([1.0, 1.0]), np.array([1.0, 1.0]), 0.5)
-    alike = root @ root.T / 0.25
+    effect = np.array([2.0, -3.0])
+    root = form_error(toy.problem([1.0, 1.0]), effect, 0.5)
+    alike = root @ root.T / 0.25 / np.outer(effect, effect)
     assert alike[0, 0] == pytest.approx(1.0, abs=1e-6)
     assert alike[0, 1] == pytest.approx(0.9 * math.exp(-0.5), abs=1e-6)
 

@@ -1,6 +1,5 @@
 """`[mechanisms]` of an impact file: the mechanisms of a diagnosis, forward."""
 
-import math
 import tomllib
 
 import pytest
@@ -42,17 +41,6 @@ def test_waves_asked_for_are_those_of_the_support_of_that_name():
     by_key = blow(BALL.replace("laws", 'support = "half-space"\nlaws'))["fitted"]
     assert by_name.restitution == pytest.approx(by_key.restitution, rel=1e-12)
     assert by_name.radiated_J == pytest.approx(by_key.radiated_J, rel=1e-9)
-
-
-def test_a_strength_that_is_constant_is_a_flat_of_that_strength():
-    """A size effect at one radius: sqrt(1 + R*/R) times the strength, of both bodies."""
-    length = 2e-4
-    factor = math.sqrt(1.0 + length / 0.005)
-    asked = blow(BALL + f"[mechanisms.size-effect]\nsize_length_m = {length}\n")["fitted"]
-    stronger = BALL.replace("3.05e8", repr(3.05e8 * factor)).replace("1.7e9", repr(1.7e9 * factor))
-    stated = blow(stronger)["fitted"]
-    assert asked.restitution == pytest.approx(stated.restitution, rel=2e-3)
-    assert asked.residual_flat_m == pytest.approx(stated.residual_flat_m, rel=5e-3)
 
 
 def test_a_sweep_takes_the_mechanism_at_each_speed_as_single_blows_do():

@@ -200,9 +200,11 @@ def test_a_scar_is_as_wide_as_its_contact_at_any_scale():
         assert found.scar_width_m == found.scar_length_m == pytest.approx(width, rel=1e-3)
 
 
-@pytest.mark.parametrize(("length", "radius", "factor"), [(3e-4, 1e-6, 17.35), (3e-4, 1e-7, 54.8)])
-def test_a_strength_beyond_a_factor_of_ten_is_not_cut(length, radius, factor):
-    """sqrt(1 + R*/R) of both strengths, stated, is the same blow."""
+@pytest.mark.parametrize(
+    ("length", "radius", "factor"), [(2e-4, 5e-3, 1.0198), (3e-4, 1e-6, 17.35), (3e-4, 1e-7, 54.8)]
+)
+def test_a_strength_is_that_of_both_bodies_and_not_cut(length, radius, factor):
+    """sqrt(1 + R*/R) of both strengths, stated, is the same blow, beyond a factor of ten too."""
     soft, hard = 3e7, 1e9
     size = {"size-effect": {"size_length_m": length}}
     given = {"radius": radius, "law": "fitted"}

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.outside import AMPLITUDES, odd_repeats, outside_of
-from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.unknowns.drift import Drift
+from dentscope.discrepancy.unknowns.followed import Followed
 
 CELLS = 8
 
@@ -40,17 +40,12 @@ def test_what_no_law_explains_is_taken_up(toy) -> None:
     assert gained(toy, [40.0 * (-1) ** k for k in range(CELLS)]) > 100.0
 
 
-def test_a_drift_is_worth_what_its_p_value_can_be(toy) -> None:
-    p = 1e-4
-    given = toy.problem([0.0], drifts=(Drift("restitution", 0.1, 3.9, math.log(p)),))
-    assert odd_repeats(given) == pytest.approx(-math.log(-math.e * p * math.log(p)), abs=1e-3)
+@pytest.mark.parametrize("p", [1e-4, 1e-8])
+def test_a_drift_or_a_column_is_worth_what_its_p_value_can_be(toy, p) -> None:
+    """At most 1/(-e p ln p) (Sellke, Bayarri and Berger 2001)."""
+    drifts = (Drift("restitution", 0.1, 3.9, math.log(p)),)
+    followed = (Followed("x_oil", "restitution", 0.1, math.log(p)),)
+    for given in ({"drifts": drifts}, {"followed": followed}):
+        found = odd_repeats(toy.problem([0.0], **given))
+        assert found == pytest.approx(-math.log(-math.e * p * math.log(p)))
     assert odd_repeats(SimpleNamespace(drifts=(), scatters=(), followed=())) == -math.inf
-
-
-def test_scatter_may_be_a_noise_misjudged_up_to_a_few_times(toy) -> None:
-    def odds(ratio: float) -> float:
-        return odd_repeats(toy.problem([0.0], scatters=(Scatter("restitution", ratio, 30),)))
-
-    assert odds(1.5) < 0.0
-    assert odds(78.0) > 20.0
-    assert odds(2.0) < odds(4.0) < odds(8.0)

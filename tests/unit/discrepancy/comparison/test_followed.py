@@ -1,12 +1,10 @@
 """Repeats that follow a column which no simulation knows."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.outside import odd_repeats
-from dentscope.discrepancy.unknowns.followed import FALSE_ALARMS, Entries, Followed, followed_of
+from dentscope.discrepancy.unknowns.followed import FALSE_ALARMS, Entries, followed_of
 from scipy.stats import f_oneway
 
 
@@ -46,10 +44,3 @@ def test_entries_without_repeats_are_held_against_the_stated_noise():
     assert followed_of("x_oil", "restitution", [alone], tested=1).span == pytest.approx(0.1)
     same = Entries(("a", "a"), np.array([0.5, 0.6]), np.full(2, 0.01))
     assert followed_of("x_oil", "restitution", [same], tested=1) is None
-
-
-def test_what_is_followed_speaks_for_something_outside():
-    """A p value of 1e-8 is worth at most 1/(-e p ln p) (Sellke, Bayarri and Berger 2001)."""
-    followed = (Followed("x_oil", "restitution", 0.1, math.log(1e-8)),)
-    found = odd_repeats(SimpleNamespace(drifts=(), scatters=(), followed=followed))
-    assert found == pytest.approx(-math.log(-math.e * 1e-8 * math.log(1e-8)))

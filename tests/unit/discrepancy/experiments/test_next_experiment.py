@@ -106,22 +106,12 @@ def on_rig(toy, **strikers):
     return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=toy.rig_of(**strikers))
 
 
-def test_trials_lie_within_the_rigs_speeds_and_angles(toy) -> None:
+def test_trials_lie_within_the_rigs_speeds(toy) -> None:
     given = on_rig(toy, ball=BALL)
     found = candidates_of(given)
     assert found
     assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
     assert all(c.condition.angle == math.pi / 2.0 for c in found)
-    oblique = replace(
-        given,
-        conditions=tuple(
-            toy.condition(1.0, angle=math.radians(a)) for a in (30.0, 75.0)
-        ),
-    )  # fmt: skip
-    angles = [math.degrees(c.condition.angle) for c in candidates_of(oblique)]
-    assert min(angles) > 29.9
-    assert max(angles) < 75.1
-    assert any(31.0 < a < 74.0 for a in angles)
 
 
 def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(toy) -> None:

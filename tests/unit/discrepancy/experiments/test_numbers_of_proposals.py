@@ -15,7 +15,7 @@ from dentscope.discrepancy.baseline.laws import _apart
 from dentscope.discrepancy.baseline.solve import _level
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
-from dentscope.discrepancy.experiments.feasible import candidates_of, presses_of, to_build
+from dentscope.discrepancy.experiments.feasible import candidates_of, presses_of
 from dentscope.discrepancy.experiments.foreseen import _samples, _spread_out
 from dentscope.discrepancy.experiments.next_experiment import (
     _noise,
@@ -37,12 +37,6 @@ BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01
         "inertia_kg_m2": 1.2e-6}  # fmt: skip
 
 
-def test_speeds_are_proposed_in_four_steps_over_those_tested(toy) -> None:
-    given = toy.problem([0.0, 0.0], speeds=[1.0, 16.0], rig=toy.rig_of(ball=BALL))
-    found = [c.condition.speed for c in candidates_of(given)]
-    assert found == pytest.approx([2.0, 4.0, 8.0])
-
-
 def test_a_speed_within_a_twentieth_of_a_tested_one_is_not_proposed(toy) -> None:
     def speeds(*tested):
         given = toy.problem([0.0] * len(tested), speeds=tested, rig=toy.rig_of(ball=BALL))
@@ -59,12 +53,6 @@ def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
     found = candidates_of(replace(given, conditions=lean))
     seen = [round(math.degrees(c.condition.angle), 6) for c in found]
     assert sorted(set(seen) - {40.0, 80.0}) == [45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0]
-
-
-def test_a_body_to_be_built_is_half_or_twice_as_large(toy) -> None:
-    given = toy.problem([0.0, 0.0], speeds=[1.0, 2.0], rig=toy.rig_of(ball=BALL))
-    radii = sorted({c.built["radius_m"] for c in to_build(given)})
-    assert radii == pytest.approx([0.005, 0.02])
 
 
 @pytest.fixture

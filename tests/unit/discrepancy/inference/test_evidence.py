@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.estimates import parameters_of
-from dentscope.discrepancy.inference.derivatives import form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
 from dentscope.discrepancy.inference.left_out import Whole
 from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
@@ -171,17 +170,6 @@ def test_some_cells_foretell_the_others() -> None:
     both = linear.log_likelihood(r)
     others = -0.5 * (squares + np.linalg.slogdet(2.0 * math.pi * kept)[1])
     assert log_density == pytest.approx(both - others)
-
-
-def test_a_forms_error_is_a_share_of_the_effect_and_smooth(toy) -> None:
-    given = toy.problem([0.0] * 4, speeds=[1.0, 1.1, 2.0, 8.0])
-    effect = np.array([1.0, 2.0, -3.0, 4.0])
-    form = form_error(given, effect, 0.15)
-    cov = form @ form.T
-    assert np.sqrt(np.diag(cov)) == pytest.approx(0.15 * np.abs(effect), rel=1e-6)
-    alike = cov / np.outer(effect, effect) / 0.15**2
-    assert alike[0, 1] > alike[0, 2] > alike[0, 3] > 0.0
-    assert alike[0, 1] < 0.9
 
 
 def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
