@@ -76,7 +76,7 @@ def test_time_left_is_learned_from_the_cases_that_ended():
     # a machine three times slower, where softness costs more than foreseen, and with scatter
     cases, draw = survey(), np.random.default_rng(3)
     truth = [
-        180.0 * (c.pair.E_reduced / c.pair.Sy_min / 300.0) ** 0.8 * draw.lognormal(0.0, 0.2)
+        114.0 * (c.pair.E_reduced / c.pair.Sy_min / 300.0) ** 0.8 * draw.lognormal(0.0, 0.2)
         for c in cases
     ]
     ended, whole = played(cases, truth, workers=2)
