@@ -91,13 +91,7 @@ def all_kinds() -> dict[str, str]:
 
 
 def load_kind(name: str) -> Kind:
-    """Return a kind by its name.
-
-    Raises
-    ------
-    InputError
-        There is no such kind, or its package fails.
-    """
+    """Return a kind by its name; refuse one that there is not, or whose package fails."""
     if name in KINDS:
         return Kind(name, import_module(f".{name}.options", __package__).Options)
     if name in kind_names():

@@ -36,20 +36,10 @@ class Bounce:
 
 @dataclass(frozen=True)
 class Bounced:
-    """The contacts of a track and what its flights share.
+    """The contacts of a track in the order of time, and what its flights share.
 
-    Parameters
-    ----------
-    bounces
-        In the order of time.
-    stage, view
-        Ranges, and the likeliest shared unknowns.
-    fall
-        Acceleration at rest that the track itself shows [unit/s²], nan if it shows none.
-    scale
-        Size of the unit.
-    notes
-        What the reader should know.
+    Ranges and the likeliest shared unknowns; the acceleration at rest that the track itself shows,
+    nan if it shows none [unit/s²]; the size of the unit.
     """
 
     bounces: tuple[Bounce, ...]

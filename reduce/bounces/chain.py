@@ -114,12 +114,9 @@ def _rests(times: Array, kept: Sequence[int], single: Sequence[bool]) -> Array:
 
 
 def chain_of(times: Array) -> Chain | None:
-    """Return the longest run of bounces in a list of instants, None if there is none.
+    """Return the longest run of bounces in (n,) increasing instants [s], None if there is none.
 
-    Parameters
-    ----------
-    times
-        (n,), increasing [s]; the first 80 are looked at.
+    The first 80 are looked at.
     """
     used = np.asarray(times[:_INSTANTS_TRIED], dtype=np.float64)
     if used.size < 3:

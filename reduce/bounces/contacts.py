@@ -43,12 +43,8 @@ def told_bounces(
 ) -> Bounced:  # fmt: skip
     """Return what `find_bounces` finds.
 
-    Raises
-    ------
-    Refused
-        The unit or the rate contradicts gravity: the values that would fit. No restitution is one.
-    InputError
-        No contact with flight on both sides.
+    Refuses a unit or a rate that contradicts gravity, with the values that would fit; a track
+    without any restitution that is one, and without a contact between two flights.
     """
     found = find_bounces(track, ball, metres=metres, contact=contact)
     if found is not None:

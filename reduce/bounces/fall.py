@@ -18,15 +18,7 @@ _SMALL = 0.05
 
 @dataclass(frozen=True)
 class Fall:
-    """Vertical flight under gravity and quadratic drag.
-
-    Parameters
-    ----------
-    gravity
-        Acceleration at rest [m/s²].
-    terminal
-        Speed at which the drag carries the body, inf without drag [m/s].
-    """
+    """Vertical flight under quadratic drag: gravity at rest [m/s²], terminal speed [m/s] or inf."""
 
     gravity: float
     terminal: float
@@ -95,12 +87,8 @@ class Ball:
         """Return the flight at about a speed [m/s], by which the drag coefficient is taken.
 
         Buoyancy ρV/m is taken off, and the fluid that is carried along, half a volume, counts as
-        mass (L. Landau, E. Lifshitz, Fluid Mechanics, §11).
-
-        Raises
-        ------
-        InputError
-            The ball is lighter than the fluid.
+        mass (L. Landau, E. Lifshitz, Fluid Mechanics, §11). Refuses a ball that is lighter than the
+        fluid.
         """
         if self.mass is None or self.diameter is None:
             return Fall(self.gravity, math.inf)
@@ -128,14 +116,8 @@ def flight(
 ) -> tuple[Array, Array]:
     """Return height and upward speed of a body in vertical flight, exactly, y'' = -a - d y'|y'|.
 
-    Parameters
-    ----------
-    time
-        (n,), from the instant of `start` and `speed` [s].
-    start, speed
-        Height and speed at time 0, upwards [unit, unit/s].
-    fall, drag
-        a [unit/s²] and d [1/unit]; a small negative d is allowed, as a fit may try one.
+    At times (n,) from the instant of `start` and `speed`, upwards [s, unit, unit/s]; `fall` is a
+    [unit/s²], `drag` d [1/unit], of which a small negative one is allowed, as a fit may try one.
     """
     if drag == 0.0 or fall <= 0.0:
         return start + speed * time - 0.5 * fall * time**2, speed - fall * time

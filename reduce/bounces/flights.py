@@ -21,18 +21,10 @@ from .view import Launch, Stage, View
 
 @dataclass(frozen=True)
 class Piece:
-    """Samples of one flight, in order of time, and its motion.
+    """Samples of one flight, (n,) in order of time, and its motion.
 
-    Parameters
-    ----------
-    index
-        (n,) samples that lie on it.
-    reference
-        Time at which `launch` holds [s].
-    launch
-        Height and speed.
-    sigma
-        Standard deviation of a sample [unit].
+    `launch` holds at the time `reference` [s]; `sigma` is the standard deviation of a sample
+    [unit].
     """
 
     index: Indices
@@ -120,10 +112,7 @@ def _grown(
 ) -> tuple[Piece, float]:
     """Let a flight grow from `size` samples, `near` samples away from its contact.
 
-    Returns
-    -------
-    tuple
-        The flight, and the error of the speed that it tells at the turning point [unit/s].
+    Returns it, and the error of the speed that it tells at the turning point [unit/s].
     """
     used = order[near : near + size]
     far = near + size

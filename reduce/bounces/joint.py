@@ -33,16 +33,11 @@ alone would make the error of one that does not tell.
 
 @dataclass(frozen=True)
 class Before:
-    """What is known of a view before the track is looked at.
+    """What is known of fall and drag [unit/s², 1/unit] before the track is looked at.
 
-    Parameters
-    ----------
-    fall, drag
-        [unit/s², 1/unit].
-    bends, grows
-        Drift of the scale with height and with time that is possible, in that of a body that rises
-        by 0.1 m or is seen for a second: over a path of a few millimetres that lasts milliseconds
-        neither perspective nor a body that comes nearer changes the scale much.
+    `bends` and `grows` are the drift of the scale with height and with time that is possible, in
+    that of a body that rises by 0.1 m or is seen for a second: over a path of a few millimetres
+    that lasts milliseconds neither perspective nor a body that comes nearer changes the scale much.
     """
 
     fall: Measured

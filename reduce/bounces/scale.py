@@ -35,16 +35,10 @@ class Scale:
 
 
 def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
-    """Return the size of the unit by both ways.
+    """Return the size of the unit by the fall and by what was stated [m], if it was.
 
-    Parameters
-    ----------
-    fall
-        Acceleration at rest that the track shows [unit/s²], nan if it shows none.
-    gravity
-        That it should be [m/s²].
-    stated
-        Size of the unit [m], or None.
+    `fall` is the acceleration at rest that the track shows [unit/s²], nan if it shows none,
+    `gravity` what it should be [m/s²].
     """
     by_fall = None
     if fall.value > 0.0 and fall.std < RULES.fall_known * fall.value:
@@ -80,10 +74,7 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
 def check_scale(scale: Scale, *, source: str) -> None:
     """Refuse a track whose unit or rate contradicts gravity, with the values that would fit.
 
-    Raises
-    ------
-    Refused
-        The fall is off by more than drag and buoyancy make.
+    Drag and buoyancy make less.
     """
     if abs(1.0 / (1.0 + scale.off) - 1.0) > RULES.fall_off:
         ratio = 1.0 + scale.off
@@ -97,15 +88,9 @@ def check_scale(scale: Scale, *, source: str) -> None:
 def floor_drift(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> Measured:
     """Return how fast the flat itself moves up through the picture [unit/s].
 
-    The heights of the contacts show it where there are two or more: a camera that is not level
-    while the body drifts aside, or a body that comes nearer.
-
-    Parameters
-    ----------
-    contacts
-        Time [s] and height [unit] of each.
-    fall
-        Acceleration of the fall [unit/s²].
+    The heights of the contacts, times [s] and heights [unit], show it where there are two or more:
+    a camera that is not level while the body drifts aside, or a body that comes nearer. `fall` is
+    its acceleration [unit/s²].
     """
     if len(contacts) < 2:
         return Measured(0.0, 0.0)
@@ -122,14 +107,8 @@ def frames_lost(
 ) -> Array:
     """Return how likely a frame is missing in each contact, (n,); 0 where the heights tell nothing.
 
-    Parameters
-    ----------
-    contacts
-        Time [s] and height [unit] of each.
-    rises
-        By which a missing frame lifts the point where the flights of each meet [unit].
-    fall
-        Acceleration of the fall [unit/s²].
+    Contacts with time [s] and height [unit]; `rises` is by how much a missing frame lifts the point
+    where the flights of each meet [unit], `fall` the acceleration [unit/s²].
     """
     if len(contacts) < 2:
         return np.zeros(len(contacts))

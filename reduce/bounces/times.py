@@ -41,18 +41,9 @@ class BouncedTimes:
 
 @dataclass(frozen=True)
 class BounceTimes:
-    """Contacts that hang together, and the bounces between known flights.
+    """Contacts that hang together, and the bounces between known flights, in the order of time.
 
-    Parameters
-    ----------
-    chain
-        The contacts that were used.
-    time_std
-        Standard deviation of a contact's time [s].
-    bounces
-        In the order of time.
-    notes
-        What was left out and taken for granted.
+    `time_std` (n,) is the standard deviation of a contact's time [s].
     """
 
     chain: Chain

@@ -39,14 +39,8 @@ class Launch(NamedTuple):
 class Stage:
     """The ranges by which drifts of the scale are counted.
 
-    Parameters
-    ----------
-    floor
-        Height of the flat, near which the scale is 1 [unit].
-    reach
-        H, largest height above it [unit].
-    start, span
-        Beginning of the track and T, its length [s].
+    Height of the flat, near which the scale is 1, and H, the largest height above it [unit];
+    beginning of the track and T, its length [s].
     """
 
     floor: float

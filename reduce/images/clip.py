@@ -35,22 +35,11 @@ Frame = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True)
 class Clip:
-    """Frames with gravity downwards, and what the container says about their timing.
+    """Frames (n, rows, columns) with gravity downwards, grey 0-255, and what the container says.
 
-    Parameters
-    ----------
-    frames
-        (n, rows, columns), grey values 0-255.
-    container_rate
-        Frames per second by the container's time stamps, nan for a folder of pictures [1/s].
-    uneven
-        Number of gaps between time stamps that differ from the usual one by more than half.
-    repeats
-        Numbers of the frames that show what their predecessor showed, (r,).
-    source
-        The file or folder.
-    stamps
-        (n,) the container's time stamps [s], or None.
+    Frames per second by its time stamps [1/s], nan for pictures; how many gaps between the stamps
+    (n,) [s] differ from the usual one by more than half; numbers of frames that repeat the one
+    before.
     """
 
     frames: Frame

@@ -140,14 +140,8 @@ def fit_ball(
 ) -> BallEdge | None:
     """Fit centre and radius of a bright disc whose light may fall off linearly.
 
-    Parameters
-    ----------
-    frame
-        (rows, columns), grey values.
-    start
-        Column, row, radius [pixel].
-    levels
-        Grey values of background and ball.
+    In grey values (rows, columns), from column, row and radius [pixel]; `levels` are the grey
+    values of background and ball.
     """
     x, y, radius = start
     reach = int(radius + 8.0)

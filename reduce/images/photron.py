@@ -36,11 +36,8 @@ _HEADERS = {
 def photron_frames(path: Path) -> Iterator[tuple[float, npt.NDArray[np.uint8]]]:
     """Yield time [s] and grey values 0-255 (rows, columns) of each frame.
 
-    Raises
-    ------
-    InputError
-        No header beside the frames, one that does not say what is needed, colours, or fewer bytes
-        than it claims.
+    Refuses what has no header beside the frames, or one that does not say what is needed, colours,
+    or fewer bytes than it claims.
     """
     said = _header(path)
     count, rows, columns, bits, depth = (

@@ -24,13 +24,7 @@ PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
 
 
 def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
-    """Return one picture as grey values 0-255, (rows, columns).
-
-    Raises
-    ------
-    InputError
-        Not a picture that can be read.
-    """
+    """Return one picture as grey values 0-255, (rows, columns); refuse what cannot be read."""
     try:
         from skimage.io import imread
     except ImportError:
@@ -51,13 +45,7 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
 
 
 def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> npt.NDArray[np.uint8]:
-    """Return decoded pixels of 8 or 16 bits, grey or in colours, as grey values 0-255.
-
-    Raises
-    ------
-    InputError
-        Pixels of another kind, or more than one picture.
-    """
+    """Return decoded pixels of 8 or 16 bits as grey values 0-255; refuse others."""
     return one_channel(_flat(_eight_bits(pixels, source), source), channel)
 
 
@@ -95,13 +83,7 @@ def one_channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.u
 
 
 def crop_window(text: str) -> tuple[int, int, int, int] | None:
-    """Return the four numbers of TOP:BOTTOM,LEFT:RIGHT, None for an empty text.
-
-    Raises
-    ------
-    ValueError
-        Any other text.
-    """
+    """Return the numbers of TOP:BOTTOM,LEFT:RIGHT, None of an empty text; else ValueError."""
     found = _CROP.fullmatch(text)
     if found is None:
         if text:
@@ -114,13 +96,7 @@ def crop_window(text: str) -> tuple[int, int, int, int] | None:
 def cropped(
     frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int] | None
 ) -> npt.NDArray[np.uint8]:
-    """Return the rows and columns of a crop, its ends excluded; the whole frame without one.
-
-    Raises
-    ------
-    InputError
-        The crop is not within the frame.
-    """
+    """Return the rows and columns of a crop, its ends excluded; refuse one beyond the frame."""
     if crop is None:
         return frame
     top, bottom, left, right = crop

@@ -50,18 +50,9 @@ def rod_guess(mask: Mask) -> tuple[RodShape, tuple[float, float, float]] | None:
 def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> BallEdge | None:
     """Return the centroid of the light of the brightest body, which no blur moves.
 
-    Parameters
-    ----------
-    frame
-        (rows, columns), grey values, the ball bright.
-    levels
-        Grey values of background and ball.
-
-    Returns
-    -------
-    Ball or None
-        Its radius is that of a disc of equal light. None where nothing is bright, or the body
-        touches the edge of the frame.
+    In grey values (rows, columns), the ball bright; `levels` are those of background and ball. Its
+    radius is that of a disc of equal light. None where nothing is bright, or the body touches the
+    edge of the frame.
     """
     mask = body_mask(frame, 0.5 * (levels[0] + levels[1]))
     # other things that move pull the level of the clip; the ball has its own

@@ -13,21 +13,9 @@ from .rigid import Poses
 
 
 def check_fall(fall: Measured, gravity: float, source: str) -> None:
-    """Refuse what does not fall: it is carried, it walks, or unit, rate or up are wrong.
+    """Refuse what does not fall as gravity asks, both [m/s²], by more than drag and buoyancy make.
 
-    Parameters
-    ----------
-    fall
-        Downward acceleration between the contacts [m/s²].
-    gravity
-        That it should be [m/s²].
-    source
-        The file.
-
-    Raises
-    ------
-    Refused
-        It is off by more than drag and buoyancy make.
+    It is carried, it walks, or unit, rate or up are wrong.
     """
     if abs(fall.value - gravity) > max(RULES.fall_off * gravity, 3.0 * fall.std):
         raise Refused(
@@ -38,13 +26,7 @@ def check_fall(fall: Measured, gravity: float, source: str) -> None:
 
 
 def check_shape(poses: Poses, source: str) -> None:
-    """Refuse markers that are no rigid body.
-
-    Raises
-    ------
-    Refused
-        They lie too far off one shape.
-    """
+    """Refuse markers that lie too far off one shape: they are no rigid body."""
     if poses.spread > RULES.not_rigid * poses.extent:
         raise Refused(
             f"the markers lie {1e3 * poses.spread:.3g} mm off one rigid shape of "

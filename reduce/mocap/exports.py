@@ -28,18 +28,9 @@ _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": 
 
 
 class Export(NamedTuple):
-    """What an export holds.
+    """What an export holds: (n,) times [s], m names, positions (n, m, 3) in `unit`.
 
-    Parameters
-    ----------
-    time
-        (n,) [s].
-    names
-        Of the m markers.
-    position
-        (n, m, 3), NaN where a marker was not seen, in `unit`.
-    unit
-        Of length.
+    NaN where a marker was not seen.
     """
 
     time: Array
@@ -49,12 +40,9 @@ class Export(NamedTuple):
 
 
 def read_export(path: Path) -> Export | None:
-    """Return what a tracker's export holds; None for any other file.
+    """Return what a tracker's export holds, None for any other file.
 
-    Raises
-    ------
-    InputError
-        An export that holds no positions.
+    Refuse one without positions.
     """
     with path.open("rb") as stream:
         first = stream.read(4096).decode("utf-8-sig", errors="replace")

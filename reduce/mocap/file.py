@@ -43,19 +43,7 @@ _TURN = ("qw", "qx", "qy", "qz")
 
 @dataclass(frozen=True)
 class Markers:
-    """Positions of markers.
-
-    Parameters
-    ----------
-    time
-        (n,), increasing [s].
-    names
-        Of the m markers.
-    position
-        (n, m, 3), NaN where a marker was not seen [m].
-    source
-        The file.
-    """
+    """Positions (n, m, 3) of markers at increasing times (n,) [m, s]; NaN where not seen."""
 
     time: Array
     names: tuple[str, ...]
@@ -73,13 +61,7 @@ class Markers:
         return float(np.mean(~np.isfinite(self.position).all(axis=2)))
 
     def only(self, names: tuple[str, ...]) -> Markers:
-        """Return the named markers, in that order.
-
-        Raises
-        ------
-        InputError
-            There is no such marker.
-        """
+        """Return the named markers, in that order; refuse a name that is none of theirs."""
         for name in names:
             if name not in self.names:
                 raise InputError(

@@ -20,20 +20,10 @@ from .rigid import Poses
 
 @dataclass(frozen=True)
 class Flights:
-    """All flights of a recording.
+    """All flights of a recording, a motion each, and b, (3,) [m].
 
-    Parameters
-    ----------
-    spans
-        First and last index among the poses, both included, of each flight.
-    motions
-        One for each flight.
-    offset
-        b, (3,) [m].
-    covariance
-        (3 + 12 f, 3 + 12 f) of b and the steps of each motion.
-    sigma
-        Standard deviation of a marker that the poses show about the motions [m].
+    `spans` are first and last index among the poses, both included; `covariance` (3 + 12 f, 3 + 12
+    f) is that of b and the steps of each motion, `sigma` that of a marker about the motions [m].
     """
 
     spans: tuple[tuple[int, int], ...]

@@ -15,14 +15,7 @@ from .rigid import Poses
 def find_flights(poses: Poses, gravity: Array, prior: Prior) -> Flights | None:
     """Return the flights of a recording, or None if there is none.
 
-    Parameters
-    ----------
-    poses
-        Of the body.
-    gravity
-        (3,) acceleration in flight [m/s²].
-    prior
-        Of the centre of mass.
+    `gravity` is the (3,) acceleration in flight [m/s²], `prior` that of the centre of mass.
     """
     spans = _spans(poses, gravity, prior)
     if not spans:

@@ -22,18 +22,10 @@ SHARED, OWN = 3, 12
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known beforehand about b, the centre of mass seen from the centroid.
+    """What is known beforehand about b, the centre of mass seen from the centroid (3,) [m].
 
-    Parameters
-    ----------
-    value
-        (3,) [m].
-    std
-        Standard deviation along `way`, or in all directions [m].
-    way
-        (3,) axis of a rod; zeros for no direction of its own.
-    across
-        Standard deviation across `way` [m].
+    `std` is its standard deviation along `way`, the axis (3,) of a rod, and `across` it [m]; in all
+    directions where that is zeros.
     """
 
     value: Array

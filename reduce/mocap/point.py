@@ -72,21 +72,10 @@ class PointReduction:
 
 
 def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> PointReduction:
-    """Return the bounces of a ball whose centre is followed.
+    """Return the bounces of a ball whose centre, the one marker, is followed.
 
-    Parameters
-    ----------
-    markers
-        One marker, the centre of the ball.
-    scene
-        Direction of up; gravity is fitted with the drag.
-    spin
-        (3,) spin before the first bounce, measured otherwise [rad/s].
-
-    Raises
-    ------
-    InputError
-        No bounce with a flight on both sides, or no fall.
+    `spin` is that before the first bounce, (3,) [rad/s], measured otherwise; gravity is fitted with
+    the drag. Refuses what has no bounce with a flight on both sides, or no fall.
     """
     seen = np.isfinite(markers.position[:, 0]).all(axis=1)
     time, position = markers.time[seen], markers.position[seen, 0]

@@ -42,16 +42,9 @@ _COLUMNS = tuple(n for n in _NAMES if n in TRIAL_COLUMNS)
 
 @dataclass(frozen=True)
 class MocapScene:
-    """What the markers do not tell.
+    """What the markers do not tell: up (3,) out of the flat in the file's axes, gravity [m/s²].
 
-    Parameters
-    ----------
-    up
-        (3,) unit vector out of the flat, in the axes of the file.
-    gravity
-        [m/s²].
-    length_scale_std
-        Relative standard deviation of all lengths of the tracker.
+    And the relative standard deviation of all lengths of the tracker.
     """
 
     up: Array
@@ -132,16 +125,7 @@ class MocapReduction:
 
 
 def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) -> MocapReduction:
-    """Return every impact between two free flights of a body.
-
-    Parameters
-    ----------
-    poses
-        Of the body in the frames.
-    body
-        Shape, centre of mass and axis, in the axes of the mean shape.
-    scene
-        Direction of up, gravity, error of the tracker's scale.
+    """Return every impact between two free flights of a body, in the axes of its mean shape.
 
     Raises
     ------

@@ -81,10 +81,7 @@ def kabsch(shape: Array, points: Array) -> tuple[Array, Array]:
 def rigid_poses(markers: Markers) -> Poses:
     """Return mean shape and poses of a body with three or more markers.
 
-    Raises
-    ------
-    InputError
-        Fewer than three markers, or too few frames in which three are seen.
+    Refuses fewer, and too few frames in which three are seen.
     """
     points = markers.position
     seen: Mask = np.asarray(np.isfinite(points).all(axis=2))

@@ -13,13 +13,9 @@ from ...core.errors import EXIT_INPUT_ERROR, InputError
 def run_recipe(recipe: Callable[..., tuple[int, list[str]]], about: str) -> NoReturn:
     """Carry out a recipe on what the command line names, say what came of it, and leave.
 
-    Parameters
-    ----------
-    recipe
-        Takes the raw file or folder, the set's folder and whole numbers; gives the number of trials
-        and a line for each file left out.
-    about
-        The recipe's docstring; its second paragraph is the call.
+    `recipe` takes the raw file or folder, the set's folder and whole numbers; it gives the number
+    of trials and a line for each file left out. `about` is its docstring, the second paragraph the
+    call.
     """
     usage = about.split("\n\n")[1].strip()
     raw, target, *rest = sys.argv[1:] if len(sys.argv) > 2 else ("", "", "no number")

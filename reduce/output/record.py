@@ -24,13 +24,7 @@ def write_record(
     options: Mapping[str, Any],
     trials: list[str] | None = None,
 ) -> tuple[Path, Path]:
-    """Write NAME-KIND.json (raw file, checksum, options, values, notes) and the picture.
-
-    Returns
-    -------
-    tuple
-        Path of the record and of the picture.
-    """
+    """Write NAME-KIND.json (file, checksum, options, values, notes) and the picture; both paths."""
     record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
     content = {
         "kind": kind,

@@ -57,10 +57,8 @@ class PressRecord:
     ----------
     load, depth
         (n,) [N, m]; the load upwards, the depth growing with it.
-    missed
-        How many rows hold no number.
-    gap
-        (n,): how many rows just before this one hold none.
+    missed, gap
+        How many rows hold no number; how many of them stand just before each row, (n,).
     stated
         Compliance of the machine that the file states [m/N]; none if it does not.
     """
@@ -74,13 +72,7 @@ class PressRecord:
 
 
 def read_press(path: Path, options: PressOptions) -> PressRecord:
-    """Read load and depth of a machine's file.
-
-    Raises
-    ------
-    InputError
-        Not a table, no load or depth in it, or units that are not known.
-    """
+    """Read load and depth of a machine's file; refuse what has neither in known units."""
     tables = list(_tables(path, options))
     found = next((t for t in tables if _has_both(t, options)), tables[0])
     load, depth = (_column(found, *which, path, options) for which in _wanted(options))

@@ -27,20 +27,8 @@ _HELD = 0.01
 class Cycle(NamedTuple):
     """One loading and unloading.
 
-    Parameters
-    ----------
-    peak
-        Largest load [N].
-    begin
-        Row of the record in which its largest load is first reached.
-    turn
-        Row in which unloading begins.
-    unloading
-        Indices from there to the least load.
-    least
-        Load there, as a part of the largest.
-    beyond
-        Whether it goes beyond every load before.
+    Largest load [N], first reached in row `begin`; unloading begins in row `turn` and goes on to
+    the least load, a part of the largest. `beyond` where it goes beyond every load before.
     """
 
     peak: float
@@ -59,11 +47,8 @@ def noise_of(values: Array) -> float:
 def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
     """Return the cycles of a record in their order.
 
-    Raises
-    ------
-    InputError
-        No load above the noise, rows without numbers at the largest load, a load cell at its end,
-        or no unloading.
+    Refuses a load that is not above the noise, rows without numbers at the largest load, a load
+    cell at its end, and no unloading.
     """
     load, source = record.load, record.source
     if load.size < RULES.table_rows:

@@ -19,22 +19,12 @@ from .cycles import Cycle, cycles_of, noise_of
 
 @dataclass(frozen=True)
 class ReducedPress:
-    """One press.
+    """One press: its cycle, and its largest load [N].
 
-    Parameters
-    ----------
-    cycle
-        Its loading and unloading.
-    load
-        Largest load [N].
-    left, deepest
-        Depth that stays and depth under the largest load, from the zero of contact [m].
-    recovered
-        What the unloading gives back [m].
-    stiffness
-        Slope of the unloading where it begins, the machine's taken off as far as known [N/m].
-    crept
-        Depth that came while the load was held [m].
+    `left` and `deepest` are the depth that stays and that under the largest load, from the zero of
+    contact, `recovered` what the unloading gives back, `crept` what came while the load was held
+    [m]; `stiffness` the slope of the unloading where it begins, without the machine's as far as
+    known [N/m].
     """
 
     cycle: Cycle
@@ -60,22 +50,10 @@ class ReducedPress:
 
 @dataclass(frozen=True)
 class PressReduction:
-    """All presses of a record.
+    """All presses of a record in the order of time, and what was assumed.
 
-    Parameters
-    ----------
-    record
-        What was read.
-    depth
-        (n,) the machine's compliance taken off [m]; zero as the record has it.
-    zero
-        Depth of the first contact in it [m].
-    compliance
-        Of the machine [m/N]; none where nothing tells it.
-    presses
-        In the order of time.
-    notes
-        What was assumed.
+    `depth` (n,) is without the machine's compliance [m], `zero` that of the first contact in it
+    [m], `compliance` the machine's [m/N], none where nothing tells it.
     """
 
     record: PressRecord
@@ -103,21 +81,10 @@ class PressReduction:
 def reduce_press(
     record: PressRecord, *, compliance: Measured | None, load_std: float
 ) -> PressReduction:
-    """Return what a record shows of each press.
+    """Return what a record shows of each press; refuse one without a whole press.
 
-    Parameters
-    ----------
-    record
-        Load and depth.
-    compliance
-        Of the machine, still in the depth [m/N]; none takes the file's, or that of several cycles.
-    load_std
-        Of the largest load [N].
-
-    Raises
-    ------
-    InputError
-        The record shows no whole press.
+    `compliance` is the machine's, still in the depth [m/N]; none takes the file's, or that of
+    several cycles. `load_std` is of the largest load [N].
     """
     load, noise = record.load, noise_of(record.load)
     cycles = cycles_of(record)

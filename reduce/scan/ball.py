@@ -25,18 +25,8 @@ _BALL_POINTS = 20_000
 class ScannedBall:
     """A sphere fitted to a scan; lengths in metres.
 
-    Parameters
-    ----------
-    radius
-        Of the sphere.
-    top
-        (2,) place of its highest point.
-    reach
-        Distance from the top within which points were used.
-    rest
-        Robust standard deviation of the points about the sphere.
-    x, y, off
-        (n,) the points used, and how far they lie above the sphere.
+    Its radius, (2,) place of its top, the distance from there within which points were used, their
+    robust standard deviation about it, and each with how far it lies above, (n,).
     """
 
     radius: Measured
@@ -52,13 +42,9 @@ class ScannedBall:
 def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     """Fit a sphere to the points within `reach` of the top; default: as far as the scan goes.
 
-    The standard deviation is what leaving out eighths of the points around the top in turn gives:
-    a tip that is not round says so.
-
-    Raises
-    ------
-    InputError
-        The scan shows no rounded top, or too few points of it.
+    The standard deviation is what leaving out eighths of the points around the top in turn gives: a
+    tip that is not round says so. Refuses a scan without a rounded top, or with too few points of
+    it.
     """
     i, j = np.nonzero(np.isfinite(scan.z))
     x, y, z = i * scan.step[0], j * scan.step[1], scan.z[i, j]

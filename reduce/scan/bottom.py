@@ -49,19 +49,7 @@ class _Floor:
 def find_bottom(found: Levelled, half_width: float, *, source: str) -> Bottom:
     """Return the deepest point with the standard deviation that the surface's roughness gives.
 
-    Parameters
-    ----------
-    found
-        The levelled scan.
-    half_width
-        Half the width of the crater [m].
-    source
-        Name of the file.
-
-    Raises
-    ------
-    InputError
-        The floor has too few points.
+    `half_width` is half the width of the crater [m]. Refuses a floor of too few points.
     """
     smooth = ndimage.gaussian_filter(filled(found.z), 0.2 * half_width / found.step)
     start = np.unravel_index(int(np.argmin(np.where(found.crater, smooth, np.inf))), smooth.shape)

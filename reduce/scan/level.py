@@ -29,13 +29,11 @@ class Levelled:
     Parameters
     ----------
     z
-        (nx, ny) heights above the undisturbed surface, NaN where nothing was seen [m].
+        (nx, ny) heights above it, NaN where nothing was seen [m].
     crater, clear
         (nx, ny) the crater; the surface that it was levelled on.
-    step
-        (2,) distance of the points [m].
-    terms
-        (nx, ny, p) polynomial terms of the level.
+    step, terms
+        (2,) distance of the points [m]; (nx, ny, p) polynomial terms of the level.
     outliers
         Number of spikes taken out.
     """
@@ -56,10 +54,7 @@ class Levelled:
 def levelled(scan: Scan, *, level: str = "plane") -> Levelled:
     """Return the scan above its undisturbed surface.
 
-    Raises
-    ------
-    InputError
-        No crater stands out of the roughness, or it leaves no surface around it.
+    Refuses what has no crater that stands out of the roughness, or no surface left around it.
     """
     z, outliers = _without_spikes(scan.z)
     terms = _terms(z.shape, LEVELS[level])

@@ -14,16 +14,9 @@ from ..rules import RULES
 
 
 def autocovariance(z: Array, clear: Mask, reach: Indices) -> Array:
-    """Return the autocovariance of the clear points by lag, (2 rx + 1, 2 ry + 1) [m²].
+    """Return the autocovariance by lag up to `reach` points, (2 rx + 1, 2 ry + 1) [m²].
 
-    Parameters
-    ----------
-    z
-        (nx, ny) heights above the level [m].
-    clear
-        (nx, ny) points that count.
-    reach
-        (2,) largest lag along both axes, in points.
+    Of the points (nx, ny) of heights above the level [m] that are clear.
     """
     weights = clear.astype(np.float64)
     sums = _correlation(np.where(clear, z, 0.0), reach)
@@ -32,14 +25,9 @@ def autocovariance(z: Array, clear: Mask, reach: Indices) -> Array:
 
 
 def variance(weights: Array, covariance: Array) -> float:
-    """Return the variance of the weighted sum of heights [m²].
+    """Return the variance of the heights' sum with weights (nx, ny) [m²].
 
-    Parameters
-    ----------
-    weights
-        (nx, ny) weight of each point.
-    covariance
-        Autocovariance of the surface by lag; beyond its reach it is taken as 0.
+    Beyond its reach the autocovariance of the surface is taken as 0.
     """
     reach = (np.array(covariance.shape) - 1) // 2
     # lags near 0 can come out a little negative in sum where the surface is almost white

@@ -23,16 +23,9 @@ def meets_zero(
 ) -> Measured:
     """Mean over the powers of F = (a s (1 - b s²))^p, s from the end, each as likely as it fits.
 
-    Against time the striker slows down away from the end: b is 1/6 of a spring, F = sin s.
-
-    Parameters
-    ----------
-    t, force
-        (n,) in the order of `t`: time or depth, and the force in its largest.
-    step
-        -1 where the force rises with `t` from its zero, 1 where it falls to it.
-    powers
-        Between which the flank's lies.
+    Against time the striker slows down away from the end: b is 1/6 of a spring, F = sin s. `t` (n,)
+    is time or depth, `force` in its largest; `step` is -1 where the force rises with `t` from its
+    zero, 1 where it falls to it.
     """
     scale = float(np.ptp(t))
     s = -step * (t - t[0 if step < 0 else -1]) / scale  # grows from the end inwards

@@ -15,21 +15,9 @@ from ...core.errors import InputError, missing_extra
 
 @contextmanager
 def container_of(path: Path, kind: str, allowed: str) -> Iterator[Any]:
-    """Open a film or a sound.
+    """Open a film or a sound; refuse what cannot be decoded, or that PyAV is missing.
 
-    Parameters
-    ----------
-    path
-        Of the file.
-    kind
-        What a message calls reading it.
-    allowed
-        What it may be.
-
-    Raises
-    ------
-    InputError
-        It cannot be decoded, or PyAV is missing.
+    A message calls the reading `kind`, and what the file may be `allowed`.
     """
     try:
         import av

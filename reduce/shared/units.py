@@ -58,21 +58,9 @@ def quantity_of(unit: str) -> str:
 
 
 def metres(unit: str, *, source: str, allowed: Iterable[str]) -> float:
-    """Return the size of a unit of length [m].
+    """Return the size of a unit of length [m]; refuse none, or one that such a file is not in.
 
-    Parameters
-    ----------
-    unit
-        As the file or the user says it; empty if neither does.
-    source
-        The file.
-    allowed
-        Units that such a file may be in.
-
-    Raises
-    ------
-    InputError
-        No unit, or not one of the allowed.
+    `unit` is as the file or the user says it, empty if neither does.
     """
     if unit in LENGTH and unit in allowed:
         return LENGTH[unit]

@@ -19,19 +19,7 @@ _SOUND_S = 600.0
 
 @dataclass(frozen=True)
 class Sound:
-    """One channel of sound.
-
-    Parameters
-    ----------
-    samples
-        (n,), full scale is 1.
-    rate
-        Samples per second [1/s].
-    clipped
-        Part of the samples at full scale.
-    source
-        The file.
-    """
+    """One channel of sound: samples (n,) of full scale 1, rate [1/s], part at full scale."""
 
     samples: Array
     rate: float
@@ -47,10 +35,7 @@ class Sound:
 def read_sound(path: Path) -> Sound:
     """Read an audio file or a video's sound: WAV by itself, else whatever FFmpeg decodes.
 
-    Raises
-    ------
-    InputError
-        No sound that can be decoded, silence, or more than ten minutes.
+    Refuses what cannot be decoded, silence, and more than ten minutes.
     """
     with path.open("rb") as stream:
         plain = stream.read(4) in (b"RIFF", b"RIFX") and path.suffix.lower() == ".wav"

@@ -50,13 +50,7 @@ def reduce(path: Path, options: SoundOptions) -> Reduced:
 
 
 def check_level(sound: Sound) -> None:
-    """Refuse a recording that is at full scale between the contacts too.
-
-    Raises
-    ------
-    Refused
-        More of it is than the contacts of a ball fill.
-    """
+    """Refuse a recording that is at full scale between the contacts too: they fill less of it."""
     if sound.clipped > RULES.full_scale:
         raise Refused(
             f"{sound.clipped:.0%} of the samples are at full scale",

@@ -19,15 +19,7 @@ from .file import Sound
 
 @dataclass(frozen=True)
 class Onsets:
-    """Events in a record of sound.
-
-    Parameters
-    ----------
-    time, std
-        (n,): onset and its standard deviation [s].
-    rise_db
-        (n,): energy of the millisecond after over that of the time before.
-    """
+    """Events in a record of sound: onsets and their deviations [s], rises [dB], (n,)."""
 
     time: Array
     std: Array

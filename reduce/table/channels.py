@@ -47,13 +47,7 @@ class Shown(Sequence[tuple[str, ...]]):
 
 
 def channels_of(path: Path, group: str) -> tuple[list[str], Array]:
-    """Return names and numbers (n, m) of a group, the first with numbers by default.
-
-    Raises
-    ------
-    InputError
-        Not such a file, no such group, or no channels of numbers in it.
-    """
+    """Return names and numbers (n, m) of a group, by default the first with some."""
     tables = _tdms(path) if path.suffix.lower() == ".tdms" else _hdf5(path)
     wanted = group.strip("/ ")
     if wanted and wanted not in tables:

@@ -60,13 +60,7 @@ class Columns:
     heading: Heading = field(default_factory=Heading)
 
     def select(self, which: str) -> Columns:
-        """Return the rows that `COLUMN=VALUE` picks.
-
-        Raises
-        ------
-        InputError
-            Not of that form, or no row has the value.
-        """
+        """Return the rows that `COLUMN=VALUE` picks; refuse another form, or no such row."""
         name, value = selection(which, source=self.source)
         place = self.find(name, key="select")
         rows = rows_with(value, [row[place] for row in self.cells], source=self.source)
@@ -75,10 +69,7 @@ class Columns:
     def find(self, which: str, *, key: str) -> int:
         """Return the place of a column that is named, or numbered from 1.
 
-        Raises
-        ------
-        InputError
-            No column, or more than one, is meant.
+        Refuse none or several.
         """
         if which.isdecimal() and 1 <= int(which) <= len(self.names):
             return int(which) - 1
@@ -110,25 +101,16 @@ class Columns:
     def factor(
         self, place: int, quantity: str, *, given: str, key: str, default: str | None = None
     ) -> float:
-        """Return what the numbers of a column are multiplied by.
+        """Return what the numbers of a column are multiplied by; refuse a unit that is not known.
 
         Parameters
         ----------
-        place
-            The column.
-        quantity
-            One of `units.UNITS`.
-        given
-            Unit by the user, or `"file"` for what the column's name says.
-        key
-            Option that gives the unit.
+        place, quantity
+            The column, and one of `units.UNITS`.
+        given, key
+            Unit by the user, or `"file"` for what the column's name says; the option that gives it.
         default
             Unit where neither says one; None asks for it.
-
-        Raises
-        ------
-        InputError
-            The unit is not known.
         """
         units = UNITS[quantity]
         if given != "file":
@@ -154,20 +136,10 @@ class Columns:
 
 
 def read_columns(path: Path, *, sheet: str = "") -> Columns:
-    """Read the numbers of a table.
+    """Read the numbers of a table; refuse what is none, or holds none.
 
-    Parameters
-    ----------
-    path
-        The file.
-    sheet
-        Name of a sheet of a workbook, a table of a packed export, a track of a tracker's file; the
-        first or only one by default.
-
-    Raises
-    ------
-    InputError
-        Not a table, or no numbers in it.
+    `sheet` names a sheet of a workbook, a table of a packed export, a track of a tracker's file;
+    the first or only one by default.
     """
     checked_file(path, most=TABLE_BYTES, allowed="a table")
     kind = path.suffix.lower()
@@ -194,13 +166,7 @@ def is_book(path: Path) -> bool:
 
 
 def text_columns(raw: bytes, source: str, sheet: str = "") -> Columns:
-    """Read the numbers of a text table, of a LabVIEW file's segments that which is named.
-
-    Raises
-    ------
-    InputError
-        Not text, empty, or no table.
-    """
+    """Read the numbers of a text table, of a LabVIEW file's segments that which is named."""
     lines = text_lines(raw, source)
     found = labview_rows(lines, sheet, source)
     if found is None:
@@ -215,13 +181,7 @@ def text_columns(raw: bytes, source: str, sheet: str = "") -> Columns:
 
 
 def columns_of(rows: list[list[str]], source: str) -> Columns:
-    """Return the numbers in rows of cells, with the names above them.
-
-    Raises
-    ------
-    InputError
-        No row of numbers.
-    """
+    """Return the numbers in rows of cells, with the names above them; refuse rows without any."""
     known = [is_data(row) for row in rows]
     first = _first(rows, known)
     if first is None:
@@ -281,24 +241,12 @@ def _has_hole(row: Sequence[str], held: Sequence[bool]) -> bool:
 
 
 def text_lines(raw: bytes, source: str) -> list[str]:
-    """Return the lines of a text file that hold something and are no comment.
-
-    Raises
-    ------
-    InputError
-        Not text, or empty.
-    """
+    """Return the lines of a text file that hold something and are no comment; refuse none."""
     return [line for _number, line in numbered_lines(raw, source)]
 
 
 def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
-    """Return the same with the number of each line in the file, from 1.
-
-    Raises
-    ------
-    InputError
-        Not text, or empty.
-    """
+    """Return the same with the number of each line in the file, from 1."""
     each = enumerate(decoded(raw, source).splitlines(), start=1)
     lines = [(k, line) for k, line in each if line.strip() and not line.startswith("#")]
     if not lines:
@@ -307,13 +255,7 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
 
 
 def decoded(raw: bytes, source: str) -> str:
-    """Return the text of a file in any usual encoding.
-
-    Raises
-    ------
-    InputError
-        Not text, or empty.
-    """
+    """Return the text of a file in any usual encoding; refuse what is none, or empty."""
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in raw[:4096] and not wide:
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
@@ -327,14 +269,9 @@ def decoded(raw: bytes, source: str) -> str:
 
 
 def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list[list[str]]:
-    """Return the cells of a text table, its numbers with decimal points.
+    """Return the cells of a text table, its numbers with decimal points; refuse what is none.
 
     `separator` is known, or that which fits best.
-
-    Raises
-    ------
-    InputError
-        No table.
     """
     separator, rows = cells_of(lines, source, separator=separator)
     between = commas_between(chain.from_iterable(rows), separator)
@@ -344,13 +281,7 @@ def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list
 def cells_of(
     lines: Sequence[str], source: str, *, separator: str = ""
 ) -> tuple[str, list[list[str]]]:
-    """Return the separator of a text table and its cells as they are written.
-
-    Raises
-    ------
-    InputError
-        No table.
-    """
+    """Return the separator of a text table and its cells as written; refuse what is none."""
     try:
         separator = separator or _separator(lines)
         rows = list(_split(lines, separator))

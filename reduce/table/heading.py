@@ -39,18 +39,11 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Heading:
-    """Names of the columns with their units, and the header's other cells.
+    """Names of the columns, the unit in brackets where a line of its own gives it, and more.
 
-    Parameters
-    ----------
-    names
-        Of the columns, the unit in brackets where a line of its own gives it.
-    said
-        Every header line of a name, a value and perhaps a unit, in order.
-    step_s
-        Time between two rows, where the column of the time is empty [s].
-    separator
-        Of the cells, where the header names it.
+    `said` is every header line of a name, a value and perhaps a unit; `step_s` the time between two
+    rows, where the column of the time is empty [s]; `separator` that of the cells, where it is
+    named.
     """
 
     names: tuple[str, ...] = ()
@@ -95,17 +88,10 @@ def unit_in(name: str) -> str:
 
 
 def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
-    """Return what the rows above the numbers say.
+    """Return what the rows above the numbers say of `width` columns.
 
     The names are the nearest row above that is none of units and has more than one cell; units may
     stand in a row of their own, above or below the names.
-
-    Parameters
-    ----------
-    above
-        Rows above the first row of numbers.
-    width
-        Number of columns.
     """
     # a marker that was not seen yet is no name
     rows = [list(row) for row in above if {cell.lower() for cell in row} - {"", "nan"}]
@@ -158,21 +144,8 @@ def labview_rows(
     """Return the rows below the headers of a LabVIEW measurement (LVM), and its heading.
 
     Where the first cell of a row is blank, or its times are rounded to the same ones, the header's
-    `Delta_X` is the time between two rows.
-
-    Parameters
-    ----------
-    lines
-        Of the whole file. None is returned for any other file.
-    segment
-        Number of the one that is read, from 1, where there are several.
-    source
-        The file.
-
-    Raises
-    ------
-    InputError
-        Several segments, and none of them is named.
+    `Delta_X` is the time between two rows. None for the lines of any other file; refuses several
+    segments of which none is named, by its number from 1.
     """
     if not lines or not lines[0].startswith("LabVIEW Measurement"):
         return None

@@ -18,19 +18,10 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 
 def packed_table(path: Path, member: str) -> tuple[bytes, str]:
-    """Return the text of one table of a packed export, and its name.
+    """Return the text of one table of a packed export, as phyphox writes them, and its name.
 
-    Parameters
-    ----------
-    path
-        A ZIP file, as phyphox writes them.
-    member
-        Name of the table with or without its ending; the only one if empty.
-
-    Raises
-    ------
-    InputError
-        Not a ZIP file, no such table, or several without a name.
+    `member` names it with or without its ending; the only one if empty. Refuses what is no ZIP
+    file, has no such table, or several without a name.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -64,16 +55,11 @@ def packed_table(path: Path, member: str) -> tuple[bytes, str]:
 
 
 def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
-    """Return names and rows (time, x, y) of one point mass of a Tracker project.
+    """Return names and rows (time, x, y) of one point mass of a Tracker project; refuse none.
 
     The places are those in the picture turned into the project's axes and scale; without a
     calibration the scale is 1 and the unit the pixel. Without `delta_t`, the milliseconds of a
     frame, the first column counts frames.
-
-    Raises
-    ------
-    InputError
-        Not such a file, or no such track.
     """
     raw = path.read_bytes()
     if b"<!ENTITY" in raw or len(raw) > TABLE_BYTES:

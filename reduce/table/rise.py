@@ -23,22 +23,11 @@ class ElasticRise(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """Strain over stress of some rows: compliance [1/Pa] and its errors; the rows' middle.
+    """Strain over stress of some rows: compliance and its deviation [1/Pa], their middle.
 
-    Parameters
-    ----------
-    compliance, noise
-        Slope of the strain over the stress, and its standard deviation by scatter.
-    reverse
-        What the slope of the stress over the strain says beyond it.
-    bend
-        What the halves of the rows differ by beyond their scatter.
-    straight
-        Slope of the halves, the smaller in the larger.
-    slack
-        Whether the lower half is the softer one.
-    middle
-        Strain and stress of the rows' centre.
+    `reverse` is what the slope of the stress over the strain says beyond it, `bend` what the halves
+    of the rows differ by beyond their scatter, `straight` their slopes, the smaller in the larger,
+    `slack` whether the lower half is the softer one.
     """
 
     compliance: float
@@ -61,12 +50,8 @@ def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
 
     The strain is fitted over the stress, for load cells scatter less than extensometers; the slope
     of the stress over the strain is the other bound where both do (R. Frisch, 1934), and belongs to
-    the error, as does what halves of the rise and the next lower one say differently.
-
-    Raises
-    ------
-    InputError
-        Fewer than three rows, or the stress does not rise.
+    the error, as does what halves of the rise and the next lower one say differently. Refuses fewer
+    than three rows, and a stress that does not rise.
     """
     peak = float(stress.max())
     lines = [

@@ -19,20 +19,10 @@ from .options import TableOptions
 
 
 class Series(NamedTuple):
-    """Numbers against time.
+    """Numbers (n,) against time [s] as they stand, and the column they are of.
 
-    Parameters
-    ----------
-    time, value
-        (n,): time [s], number as it stands.
-    column
-        Place of the numbers in the table.
-    missed
-        Times of the rows without a number [s].
-    marks
-        What their cells hold instead, each once.
-    behind
-        How many rows stand at a time that has been before, and are left out.
+    `missed` are the times of rows without a number, `marks` what their cells hold instead, each
+    once; `behind` rows stand at a time that has been before, and are left out.
     """
 
     time: Array

@@ -22,25 +22,13 @@ class NumberCell(str):
 
 
 def sheets_of(path: Path) -> tuple[str, ...]:
-    """Return the names of a workbook's sheets.
-
-    Raises
-    ------
-    InputError
-        Not a workbook.
-    """
+    """Return the names of a workbook's sheets; refuse what is none."""
     with _opened(path) as book:
         return tuple(book.sheet_names)
 
 
 def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
-    """Return the cells of a sheet as text, the first sheet by default.
-
-    Raises
-    ------
-    InputError
-        Not a workbook, or no such sheet.
-    """
+    """Return the cells of a sheet as text, the first by default; refuse what has no such sheet."""
     with _opened(path) as book:
         by_name = {n.strip(): n for n in book.sheet_names}
         if sheet and sheet.strip() not in by_name:
@@ -55,13 +43,7 @@ def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
 
 
 def rows_of_sheets(path: Path) -> dict[str, list[list[str]]]:
-    """Return the cells of every sheet as text, counted from its first row and column.
-
-    Raises
-    ------
-    InputError
-        Not a workbook.
-    """
+    """Return the cells of every sheet as text, counted from its first row and column."""
     with _opened(path) as book:
         found = {n: book.get_sheet_by_name(n) for n in book.sheet_names}
         rows = {

@@ -22,10 +22,7 @@ def track_rod(
 ) -> tuple[dict[str, Any], RodShape]:
     """Return the tip of a rod in each frame, as named arrays (n,), and the shape of the rod.
 
-    Raises
-    ------
-    InputError
-        No rod near the critical frame, or its tip in too few frames.
+    Refuses a clip without a rod near the critical frame, or with its tip in too few frames.
     """
     shape = _rod_shape(frames, critical, levels)
     if shape is None:
@@ -117,13 +114,7 @@ def _rod_shape(
 def track_ball(
     frames: npt.NDArray[np.uint8], levels: tuple[float, float], source: str
 ) -> dict[str, Any]:
-    """Return the centre of a ball in each frame, as named arrays (n,), its radius among them.
-
-    Raises
-    ------
-    InputError
-        The ball is found in too few frames.
-    """
+    """Return centre and radius of a ball in each frame, as named arrays (n,); refuse few."""
     seen = [(n, ball_by_light(f.astype(np.float64), levels=levels)) for n, f in enumerate(frames)]
     light = [(n, b) for n, b in seen if b is not None]
     if light:

@@ -35,19 +35,11 @@ class Area(NamedTuple):
 def area_of(
     time: Array, clear: Array, level: Level, shape: Shape, ends: tuple[Measured, Measured]
 ) -> Area:
-    """Return the area under a pulse.
+    """Return the area under a pulse that begins and ends at `ends` [s].
 
-    Its error holds the noise, the level's error over the time that is taken, and the pulse's form;
-    half of the level afterwards or, of a ringing, what the halves of its swings differ by.
-
-    Parameters
-    ----------
-    time, clear
-        (n,): the record, its level before the pulse taken off, the pulse upwards.
-    level, shape
-        What is before and beside the pulse.
-    ends
-        Where its flanks meet zero [s].
+    Of a record (n,) with its level before the pulse taken off, the pulse upwards. Its error holds
+    the noise, the level's error over the time that is taken, and the pulse's form; half of the
+    level afterwards or, of a ringing, what the halves of its swings differ by.
     """
     start, end = (e.value for e in ends)
     long, step = end - start, float(np.median(np.diff(time)))

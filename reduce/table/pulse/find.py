@@ -26,24 +26,10 @@ from .shape import Shape, looks_like, shape_of, sheer
 
 @dataclass(frozen=True)
 class Pulse:
-    """The largest pulse of a record.
+    """The largest pulse of a record (n,), its baseline taken off and the pulse upwards [s, unit].
 
-    Parameters
-    ----------
-    time, value
-        (n,): the whole record, its baseline taken off and the pulse upwards [s, unit].
-    baseline, noise
-        Of the record before the pulse [unit].
-    peak
-        Largest value [unit].
-    start, end
-        Where the flanks meet zero [s].
-    area
-        Under the pulse between both ends [unit s].
-    inside
-        Which samples lie between both ends, (n,).
-    notes
-        What the reader should know.
+    Peak, ends where its flanks meet zero [s], area between them [unit s], and which samples lie
+    there.
     """
 
     time: Array
@@ -64,14 +50,7 @@ class Pulse:
 
 
 def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
-    """Return the largest pulse of a record, of either sign.
-
-    Parameters
-    ----------
-    time, value
-        (n,), time increasing.
-    source
-        The file.
+    """Return the largest pulse of a record (n,), of either sign, its times increasing.
 
     Raises
     ------

@@ -18,16 +18,9 @@ from ...shared.regression import robust_std
 
 
 class Level(NamedTuple):
-    """The level before a pulse.
+    """The record's zero before a pulse, how well it is known, and a sample's deviation [unit].
 
-    Parameters
-    ----------
-    mean, std
-        Of the record's zero, and how well it is known [unit].
-    noise
-        Standard deviation of a sample [unit].
-    first, last
-        Samples that tell it, `[first, last)`; none where the record begins in the pulse.
+    Samples `[first, last)` tell it; none where the record begins in the pulse.
     """
 
     mean: float
@@ -43,14 +36,9 @@ class Level(NamedTuple):
 
 
 def level_before(up: Array, top: int) -> Level:
-    """Return the level just before the pulse that peaks at a sample.
+    """Return the level just before the pulse that peaks at sample `top` of a record (n,).
 
-    Parameters
-    ----------
-    up
-        (n,): the record, the pulse upwards.
-    top
-        Its highest sample.
+    Upwards.
     """
     noise = robust_std(np.diff(up)) / math.sqrt(2.0)
     low = float(np.percentile(up[: top + 1], 5.0))

@@ -32,20 +32,11 @@ class RingingWithin(NamedTuple):
 def ringing_within(
     time: Array, clear: Array, ends: tuple[float, float], peak: float, ringing: float
 ) -> RingingWithin:
-    """Return the ringing within a pulse.
+    """Return the ringing within a pulse that begins and ends at `ends` [s].
 
-    Where it swings as slowly as the pulse, or the samples are few, all of it stays unknown.
-
-    Parameters
-    ----------
-    time, clear
-        (n,): the record, its level before the pulse taken off, the pulse upwards.
-    ends
-        Where the flanks of the pulse meet zero [s].
-    peak
-        Its largest value.
-    ringing
-        Largest half-wave of the other sign beside it, in the peak.
+    Of a record (n,) with its level before the pulse taken off, the pulse upwards. `ringing` is the
+    largest half-wave of the other sign beside it, in the peak. Where it swings as slowly as the
+    pulse, or the samples are few, all of it stays unknown.
     """
     long = ends[1] - ends[0]
     inside = (time > ends[0]) & (time < ends[1])

@@ -40,25 +40,11 @@ class Shape(NamedTuple):
 def shape_of(
     time: Array, clear: Array, top: int, ends: tuple[float, float], noise: float, *, source: str
 ) -> Shape:
-    """Return what else a record shows beside its largest pulse.
+    """Return what else a record shows beside its largest pulse, from `ends[0]` to `ends[1]` [s].
 
-    Parameters
-    ----------
-    time, clear
-        (n,): the record, its level before the pulse taken off, the pulse upwards.
-    top
-        Its highest sample.
-    ends
-        Beginning and end of the pulse [s].
-    noise
-        Standard deviation of a sample.
-    source
-        The file.
-
-    Raises
-    ------
-    InputError
-        It is no impact, or the impact is not whole: what it looks like.
+    Of a record (n,) with its level before the pulse taken off, the pulse upwards, `top` its highest
+    sample, `noise` a sample's standard deviation. Refuses what is no impact, or is not whole, for
+    what it looks like.
     """
     peak = float(clear[top])
     flat = _flat_top(clear, top)

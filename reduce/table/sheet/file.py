@@ -42,18 +42,9 @@ _LINES = 100
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a sheet became.
+    """What a sheet became: its rows, and of each of its columns the header and what became of it.
 
-    Parameters
-    ----------
-    trials
-        Its rows.
-    columns
-        Of each column of the sheet its header and what became of it, in words.
-    left_out
-        Cells, rows and sheets that were not taken, a line each.
-    striker
-        Keys of set.toml that the sheet has of the ball.
+    Then a line for each cell, row and sheet that was not taken, and what it has of the striker.
     """
 
     trials: tuple[Trial, ...]

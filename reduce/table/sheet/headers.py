@@ -38,24 +38,10 @@ _DEPTH = 4
 
 @dataclass
 class SheetColumn:
-    """A column that is understood.
+    """A column that is understood: its place from 0, its header as the sheet has it, what it is.
 
-    Parameters
-    ----------
-    place
-        In the row, from 0.
-    header
-        As the sheet has it.
-    kind
-        What it is.
-    unit
-        Of its numbers; None where the header names none.
-    spread
-        Whether it holds the standard deviations of another column.
-    taken
-        Cells that were read.
-    unitless
-        Whether a cell asked for the unit.
+    `unit` is None where the header names none, `spread` whether it holds the standard deviations of
+    another column, `taken` how many cells were read, `unitless` whether one asked for the unit.
     """
 
     place: int
@@ -77,16 +63,9 @@ class SheetColumn:
 
 @dataclass(frozen=True)
 class Head:
-    """Headers of a sheet.
+    """Headers of a sheet, in rows `first` to `end`, the last excluded.
 
-    Parameters
-    ----------
-    first, end
-        Rows that they take, from 0, the last excluded.
-    headers
-        Of each column, as the sheet has it.
-    says
-        The same, or what the user says that it is.
+    One a column as the sheet has it, and the same, or what the user says that it is.
     """
 
     first: int = 0
@@ -205,10 +184,7 @@ def columns_of(
 ) -> tuple[list[SheetColumn], list[tuple[str, str]]]:
     """Return the columns that are understood, and what is told of the others.
 
-    Raises
-    ------
-    InputError
-        No headers are understood, or two columns hold the approach of one row.
+    Refuses headers of which none is, and two columns of the approach of one row.
     """
     if head.understood < 2:
         asked = [nearest(header) for header in head.headers if kind_of(header) is None]
@@ -287,13 +263,7 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
 
 
 def given_columns(columns: Sequence[str]) -> dict[str, str]:
-    """Return what a user says of headers, `HEADER=quantity unit` each, by `bare` header.
-
-    Raises
-    ------
-    InputError
-        Not of that form, or no quantity that is known.
-    """
+    """Return what a user says of headers, `HEADER=quantity unit` each, by `bare` header."""
     given = {}
     for text in filter(None, columns):
         header, _, says = text.rpartition("=")

@@ -24,20 +24,9 @@ _VARIED = ("temperature_K", "angle_deg")
 
 @dataclass(frozen=True)
 class SheetRows:
-    """Rows below headers.
+    """Rows of a whole sheet, the first below its headers from 0, and the columns understood.
 
-    Parameters
-    ----------
-    rows
-        Of the whole sheet.
-    top
-        The first below the headers, from 0.
-    columns
-        Those that are understood.
-    decimals
-        Sign before the decimals, empty where none is known.
-    source
-        The file.
+    `decimals` is the sign before the decimals, empty where none is known.
     """
 
     rows: Sequence[Sequence[str]]
@@ -73,10 +62,7 @@ class _SoFar:
 def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     """Return the trials of the rows, `told` what became of the columns that are not understood.
 
-    Raises
-    ------
-    InputError
-        No approach, nothing measured, or no unit.
+    Refuses a sheet without an approach, anything measured, or a unit.
     """
     rows, columns, found = sheet.rows, sheet.columns, _SoFar()
     _check_columns(columns, told, sheet.source)

@@ -37,16 +37,11 @@ def mean_of(readings: Sequence[Measured]) -> Measured:
 def restitutions_of(
     found: Readings, last: Mapping[str, Measured]
 ) -> tuple[list[Measured], str, bool, str]:
-    """Return what a row says of the restitution, the column it is of, and how it is known.
+    """Return what a row says of the restitution, a value a reading, and the column it is of.
 
     Measured heights and speeds come before what a sheet worked out of them itself, like over like
-    before one over the other. The approach's error stays in its own column.
-
-    Returns
-    -------
-    tuple
-        One value a reading, the kind of column, whether v^2 = 2 g h is taken, and where the sheet's
-        own restitution differs, a line.
+    before one over the other; then whether v^2 = 2 g h is taken, and where the sheet's own
+    restitution differs, a line. The approach's error stays in its own column.
     """
     back, of, crossed = _measured_back(found, last)
     apart = [

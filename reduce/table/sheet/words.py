@@ -97,20 +97,11 @@ DENTS = ("dent_diameter_m", "permanent_depth_m", "scar_width_m", "scar_length_m"
 
 
 class SheetKind(NamedTuple):
-    """What a column may become: name, quantity of its unit, and the words that say so.
+    """What a column may become, and the words that say so.
 
-    Parameters
-    ----------
-    name
-        As in trials.csv, or one of `REBOUNDS`, `BODY`, `note`, `person`.
-    quantity
-        One of `UNITS`, or `text`.
-    parts
-        All of them in any order: the height of fall, the fall's height.
-    also
-        Or this alone.
-    never
-        But not with this.
+    `name` is as in trials.csv, or one of `REBOUNDS`, `BODY`, `note`, `person`; `quantity` one of
+    `UNITS`, or `text`. All of `parts` say it, in any order (the height of fall, the fall's height),
+    or `also` alone, but not with `never`.
     """
 
     name: str
