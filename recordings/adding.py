@@ -16,26 +16,12 @@ from .trials import read_trials
 
 
 def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]:
-    """Add trials to a set; what is there stays as it is written.
+    """Add trials to a set; what is there stays as it is written. Return the set, and the new names.
 
-    Parameters
-    ----------
-    folder
-        Of the set.
-    rows
-        Table with columns of trials.csv; those that the set has not had yet are added to it. Where
-        the set has an `order` and the table has none, the rows follow in theirs. They are a
-        session of their own, the next `batch`, unless they say of which they are.
-
-    Returns
-    -------
-    tuple
-        The set as it is now, and the names of the new trials.
-
-    Raises
-    ------
-    InputErrors
-        Every mistake of the rows, each by file, row and column; nothing is written then.
+    The rows have columns of trials.csv; those that the set has not had yet are added to it. Where
+    the set has an `order` and the table has none, the rows follow in theirs. They are a session of
+    their own, the next `batch`, unless they say of which they are. Every mistake of the rows is a
+    line of one error, by file, row and column; nothing is written then.
     """
     read(folder)  # a lock would make the folders around a set that is not there
     # another process may add to the same set: neither's rows must be lost

@@ -81,16 +81,9 @@ class Bench(InputTable):
 
 
 def refuse_beyond(added: RecordingSet, rows: tuple[int, ...], problems: Problems) -> None:
-    """Note rows whose speed, angle or load the rig of their set cannot do.
+    """Note in `problems` the rows of new trials alone whose speed.
 
-    Parameters
-    ----------
-    added
-        The set with the new trials alone.
-    rows
-        (n,) their rows in the file.
-    problems
-        Where mistakes go.
+    Angle or load their rig cannot do.
     """
     bench, trials = added.setup.rig, added.trials
     known = {

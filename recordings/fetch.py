@@ -74,32 +74,15 @@ class Fetched:
 
 
 def read_catalogue(path: Path) -> Catalogue:
-    """Read a list of sources.
-
-    Raises
-    ------
-    InputErrors
-        One line for each mistake.
-    """
+    """Read a list of sources; every mistake is a line of one error."""
     return read_model(path, Catalogue)
 
 
 def fetch_sources(catalogue: Catalogue, out: Path, names: Sequence[str]) -> Iterator[Fetched]:
-    """Fetch sources one after the other; files that are already there and right are kept.
+    """Fetch sources one after the other, all if no names are given, into `out/NAME/raw` each.
 
-    Parameters
-    ----------
-    catalogue
-        What there is.
-    out
-        Each source gets the folder `out/NAME/raw`.
-    names
-        Which to fetch; all when empty.
-
-    Raises
-    ------
-    InputError
-        An unknown name, an address that does not answer, or a file with another checksum.
+    Files that are already there and right are kept. Refuses an unknown name, an address that does
+    not answer, and a file with another checksum.
     """
     known = {source.name: source for source in catalogue.source}
     for name in names:

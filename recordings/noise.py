@@ -32,30 +32,13 @@ def noise_of(
     name: str, values: Array, stated: Array | None, table: Mapping[str, float],
     groups: Indices,
 ) -> Noise:  # fmt: skip
-    """Return the noise of one observable: column, then set.toml, then repeats.
+    """Return the noise of one observable (n,): column, then set.toml, then repeats.
 
-    Parameters
-    ----------
-    name
-        The observable.
-    values
-        Its column, shape (n,), NaN where not measured.
-    stated
-        Column `NAME_std`, shape (n,), or `None`.
-    table
-        `[noise]` of set.toml: `NAME` and `NAME_relative` add as squares.
-    groups
-        Number of the condition of each row, shape (n,).
-
-    Returns
-    -------
-    Noise
-        With NaN at measured rows when nothing gives a noise.
-
-    Notes
-    -----
-    Repeats: the standard deviation within conditions that have at least three trials, pooled over
-    them; as a fraction of the mean if every value is above zero, as a number otherwise.
+    `stated` is the column `NAME_std` (n,) or `None`; in `table`, `[noise]` of set.toml, `NAME` and
+    `NAME_relative` add as squares; `groups` numbers the condition of each row (n,). Repeats: the
+    standard deviation within conditions that have at least three trials, pooled over them; as a
+    fraction of the mean if every value is above zero, as a number otherwise. NaN at measured rows
+    when nothing gives a noise.
     """
     std = np.full(values.shape, np.nan)
     origins, degrees = [], float("inf")

@@ -17,12 +17,8 @@ _COMPARED_BYTES = 10_000_000
 def taken_twice(reduced: Path, trials: Sequence[str]) -> list[InputError]:
     """Return a mistake for each record whose raw file another one reduced in the same way.
 
-    Parameters
-    ----------
-    reduced
-        Folder of the records that reductions leave in a set.
-    trials
-        Those that the set still holds.
+    `reduced` is the folder of the records that reductions leave in a set, `trials` what it still
+    holds.
     """
     first: dict[str, str] = {}
     mistakes = []

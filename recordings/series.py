@@ -16,21 +16,15 @@ from .columns import PROFILE_COLUMNS, TRACE_COLUMNS
 def read_trace(path: Path) -> Mapping[str, Array]:
     """Return the columns of a trace, each of shape (n,), by name.
 
-    Raises
-    ------
-    InputErrors
-        Every mistake of the file: row, column, what is allowed.
+    Every mistake is a line of one error.
     """
     return _read(path, TRACE_COLUMNS, needed=("time_s",), one_of=("tip_height_m", "force_N"))
 
 
 def read_profile(path: Path) -> Mapping[str, Array]:
-    """Return the columns `x_m` and `z_m` of a crater's cross-section, each of shape (n,).
+    """Return the columns `x_m` and `z_m` of a crater's cross-section.
 
-    Raises
-    ------
-    InputErrors
-        Every mistake of the file: row, column, what is allowed.
+    Each of shape (n,), likewise.
     """
     return _read(path, PROFILE_COLUMNS, needed=PROFILE_COLUMNS, one_of=())
 

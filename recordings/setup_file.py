@@ -68,12 +68,7 @@ def without_marks(content: Mapping[str, Any], key: str = "") -> tuple[dict[str, 
 def setup_text(setup: SetFile, *, before: SetFile | None = None, text: str = "") -> str:
     """Return set.toml; keys at their default are left out, numbers keep every digit.
 
-    Parameters
-    ----------
-    setup
-        What it should say.
-    before, text
-        What the file says now; all else in it stays as it is.
+    `before` and `text` are what the file says now; all else in it stays as it is.
     """
     document = tomlkit.parse(text)
     _change(document, {} if before is None else _as_written(before), _as_written(setup))

@@ -92,13 +92,7 @@ def template_text(shape: Shape, name: str) -> str:
 
 
 def write_template(folder: Path, *, shape: Shape) -> None:
-    """Write set.toml, and trials.csv with its header line, into a folder.
-
-    Raises
-    ------
-    InputError
-        The folder already holds one of the two files.
-    """
+    """Write set.toml, and trials.csv with its header line, into a folder that holds neither."""
     for name in ("set.toml", "trials.csv"):
         if (folder / name).exists():
             raise InputError(

@@ -152,14 +152,7 @@ def _column(values: npt.ArrayLike, n: int, name: str) -> Array:
 def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Trials | None:
     """Read trials.csv; mistakes go to `problems`, and `None` comes back if there is no table.
 
-    Parameters
-    ----------
-    path
-        The file.
-    strikers
-        Names that the column `striker` may hold.
-    problems
-        Where mistakes go.
+    `strikers` are the names that the column `striker` may hold.
     """
     table = read_text_table(path, TRIAL_COLUMNS, problems, free=VARIED)
     if table is None:

@@ -109,8 +109,6 @@ class Trial:
     ----------
     observables
         Column of trials.csv and its value; the standard deviation fills the column `NAME_std`.
-    notes
-        What the reader should know about how the numbers came about, a sentence each.
     trace, profile
         Columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
     label
@@ -120,7 +118,6 @@ class Trial:
     """
 
     observables: Mapping[str, Measured]
-    notes: tuple[str, ...] = ()
     trace: Mapping[str, Array] = field(default_factory=dict)
     profile: Mapping[str, Array] = field(default_factory=dict)
     label: str = ""

@@ -62,16 +62,8 @@ class Finding:
 def critical_interval(width: float, alpha: float) -> float:
     """Return how many standard deviations outside an interval are a contradiction.
 
-    Parameters
-    ----------
-    width
-        Width of the interval that is allowed, in standard deviations.
-    alpha
-        Chance of a false alarm when the truth lies at one of its ends.
-
-    Notes
-    -----
-    Solves Phi(-z) + Phi(-z - width) = alpha.
+    `width` is that of the interval that is allowed, in standard deviations, `alpha` the chance of a
+    false alarm when the truth lies at one of its ends: Phi(-z) + Phi(-z - width) = alpha.
 
     Examples
     --------

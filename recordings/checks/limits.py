@@ -31,8 +31,6 @@ class Range:
 def geometric_mass(striker: StrikerTable) -> Range | None:
     """Return the mass that density and size allow [kg]; `None` without a density.
 
-    Notes
-    -----
     A sphere: 4/3 pi rho r^3. A rod: from rho pi r^2 L, plain ends, to that and what the shank and
     the tip sphere have in common beyond its centre (hemispheres when tip and shank have one
     radius), L between the tips' centres. A flatter tip adds at most one shank radius of length,

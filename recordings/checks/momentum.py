@@ -44,16 +44,14 @@ class MomentumTrials:
 
     Parameters
     ----------
-    striker
-        The body.
     angle, speed
-        (n, 2) angle of the axis [rad] and normal approach [m/s]: values and the standard
-        deviations within which they may move.
+        (n, 2) angle of the axis [rad] and normal approach [m/s]: values and the standard deviations
+        within which they may move.
     tangential, spin
         (n,) speed of the centre along the flat [m/s] and angular velocity [rad/s], before.
     measured
-        (n, 2) values and standard deviations by observable, of `FIXED_BY_MOMENTUM`; the value of
-        what was not measured is NaN.
+        (n, 2) values and standard deviations by observable, of `FIXED_BY_MOMENTUM`; NaN where there
+        is none.
     second
         What is struck, where that is a sphere.
     """
@@ -207,16 +205,8 @@ def _unit(name: str, trials: MomentumTrials) -> Array:
 def least_squares(residuals: Residuals, start: Array) -> Array:
     """Return the least sums of squares of many small problems, shape (n,).
 
-    Parameters
-    ----------
-    residuals
-        Gives the residuals (k, m) of problems numbers (k,) at their unknowns (k, p).
-    start
-        (n, p) unknowns to begin with.
-
-    Notes
-    -----
-    Levenberg 1944 and Marquardt 1963, with a damping of each problem's own.
+    `residuals` gives those (k, m) of problems number (k,) at their unknowns (k, p), `start` is (n,
+    p). Levenberg 1944 and Marquardt 1963, with a damping of each problem's own.
     """
     x, at = start.copy(), np.arange(len(start))
     r = residuals(x, at)

@@ -55,18 +55,9 @@ class Audit:
 
 
 def audit(found: RecordingSet) -> Audit:
-    """Check a set against itself.
+    """Check a set against itself: a finding for each check that it allows, also when it passes.
 
-    Parameters
-    ----------
-    found
-        The recording set.
-
-    Returns
-    -------
-    Audit
-        A finding for each check that the set allows, also when it passes; of checks made trial by
-        trial the worst, with the number of trials that share its severity.
+    Of checks made trial by trial the worst, with the number of trials that share its severity.
     """
     findings = check_mass(found)
     for rows, checks in ((found.impacts, CHECKS), (found.presses, PRESS_CHECKS)):

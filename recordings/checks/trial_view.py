@@ -39,14 +39,7 @@ def value_of(reading: TrialReading | None, otherwise: float) -> float:
 class TrialView:
     """Trial number `i` of a set; what was asked of it once is kept.
 
-    Parameters
-    ----------
-    found
-        The set.
-    i
-        Number of the trial.
-    known
-        What was found out for each striker, shared by the trials of the set.
+    `known` is what was found out for each striker, shared by the trials of the set.
     """
 
     def __init__(self, found: RecordingSet, i: int, known: dict[tuple[str, str], Any]) -> None:

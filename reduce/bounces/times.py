@@ -33,11 +33,6 @@ class BouncedTimes:
     rebound: Measured
     restitution: Measured
 
-    def trial(self, several: bool, notes: tuple[str, ...]) -> Trial:
-        """Return the row of trials.csv."""
-        row = {"impact_speed_m_s": self.approach, "restitution": self.restitution}
-        return Trial(row, notes, label=f"bounce{self.number}" if several else "")
-
 
 @dataclass(frozen=True)
 class BounceTimes:
@@ -54,7 +49,11 @@ class BounceTimes:
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each bounce."""
         several = len(self.bounces) > 1
-        return tuple(b.trial(several, self.notes) for b in self.bounces)
+        return tuple(
+            Trial({"impact_speed_m_s": b.approach, "restitution": b.restitution},
+                  label=f"bounce{b.number}" if several else "")
+            for b in self.bounces
+        )  # fmt: skip
 
     def values(self) -> dict[str, Measured]:
         """Return the numbers of every bounce by name."""

@@ -65,10 +65,9 @@ class PointReduction:
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each bounce."""
         return tuple(
-            Trial({k: v for k, v in b.measured.items() if k not in _NOT_COLUMNS}, self.notes,
-                  label=label)
+            Trial({k: v for k, v in b.measured.items() if k not in _NOT_COLUMNS}, label=label)
             for b, label in zip(self.bounces, labels(len(self.bounces)), strict=True)
-        )  # fmt: skip
+        )
 
 
 def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> PointReduction:

@@ -102,7 +102,7 @@ class MocapReduction:
 
     def _trial(self, hit: Hit, label: str) -> Trial:
         row = {name: hit.measured[name] for name in _COLUMNS if name in hit.measured}
-        return Trial(row, self.notes, trace=self._trace(hit), label=label)
+        return Trial(row, trace=self._trace(hit), label=label)
 
     def _trace(self, hit: Hit) -> dict[str, Array]:
         before, after = (self.flights.spans[f] for f in hit.flights)

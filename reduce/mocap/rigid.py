@@ -37,8 +37,6 @@ class Poses:
     whiten
         (k, 6, 6) factor that turns the error (of origin [m], rotation [rad]) into six independent
         ones of a marker's own size.
-    misfit
-        (k,) root mean square distance of the seen markers from the fitted shape [m].
     shape
         (m, 3) mean shape about its centroid [m].
     spread
@@ -52,7 +50,6 @@ class Poses:
     origin: Array
     turn: Array
     whiten: Array
-    misfit: Array
     shape: Array
     spread: float
     dropped: int
@@ -110,10 +107,9 @@ def rigid_poses(markers: Markers) -> Poses:
         turns.append(turn)
         factors.append(_whiten(body @ turn.T))
         misfits.append(np.sqrt(np.mean(np.sum((found - origin - body @ turn.T) ** 2, axis=1))))
-    misfit = np.array(misfits)
     return Poses(
         frames, markers.time[frames], np.array(origins), np.array(turns), np.array(factors),
-        misfit, shape, float(np.sqrt(np.mean(misfit**2))), dropped,
+        shape, float(np.sqrt(np.mean(np.square(misfits)))), dropped,
     )  # fmt: skip
 
 

@@ -75,7 +75,7 @@ class PressReduction:
             seen["permanent_depth_m"] = press.left
         if self.compliance is not None:
             seen |= {"press_depth_m": press.deepest, "recovered_depth_m": press.recovered}
-        return Trial(seen, self.notes, label=label)
+        return Trial(seen, label=label)
 
 
 def reduce_press(

@@ -71,7 +71,7 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
         np.sqrt((RULES.sectors - 1) / RULES.sectors * np.sum((parts - np.mean(parts)) ** 2))
     )
     missing = 100.0 * float(np.mean(~np.isfinite(scan.z)))
-    notes = (*scan.notes, f"{missing:.2g} % not seen") if missing else scan.notes
+    notes = (f"{missing:.2g} % not seen",) if missing else ()
     return ScannedBall(
         Measured(1.0 / float(fit[3]), std), fit[:2] * limit + top, limit, robust_std(off), x, y,
         off, notes,

@@ -57,7 +57,6 @@ class Crater:
     along: Section
     across: Section
     notes: tuple[str, ...]
-    source: str
 
     @property
     def is_scar(self) -> bool:
@@ -70,7 +69,7 @@ class Crater:
         if self.is_scar:
             row |= {"scar_length_m": self.length, "scar_width_m": self.width}
         profile = {"x_m": self.along.s - self.along.s[0], "z_m": self.along.z}
-        return (Trial(row, self.notes, profile=profile),)
+        return (Trial(row, profile=profile),)
 
 
 def reduce_scan(
@@ -123,7 +122,7 @@ def reduce_scan(
         length=length, width=width, sliding=length.minus(width),
         volume=volume.times(height_scale), deepest=bottom.place, direction=direction,
         surface=shown, along=along, across=across,
-        notes=_notes(scan, shown, width, height_scale), source=scan.source,
+        notes=_notes(scan, shown, width, height_scale),
     )  # fmt: skip
 
 
@@ -146,7 +145,7 @@ def _without_blur(depth: Measured, laplacian: float, blur: Measured) -> Measured
 
 
 def _notes(scan: Scan, found: Levelled, width: Measured, scale: Measured) -> tuple[str, ...]:
-    notes = [*scan.notes, f"roughness of the level surface {found.roughness * 1e6:.3g} um"]
+    notes = [f"roughness of the level surface {found.roughness * 1e6:.3g} um"]
     missing = int(np.isnan(scan.z).sum())
     if found.outliers or missing:
         notes.append(

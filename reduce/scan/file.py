@@ -40,7 +40,6 @@ class Scan:
     z: Array
     step: Array
     source: str
-    notes: tuple[str, ...] = ()
 
 
 def read_scan(

@@ -42,13 +42,13 @@ def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
         pulse = replace(pulse, peak=peak, area=area)
         values, row = _numbers(pulse, options, source)
         _whole(pulse, series, source)
-    notes, mass = pulse.notes, 1.0 if options.holds == "force" else options.mass_kg
+    mass = 1.0 if options.holds == "force" else options.mass_kg
     trace = {} if mass is None else {
         "time_s": series.time - pulse.start.value, "force_N": mass * pulse.value
     }  # fmt: skip
     return Reduced(
-        source=path, values=values, trials=(Trial(row, notes, trace=trace),),
-        notes=notes + series.notes + series.missed_notes(", none of them beside the pulse"),
+        source=path, values=values, trials=(Trial(row, trace=trace),),
+        notes=pulse.notes + series.notes + series.missed_notes(", none of them beside the pulse"),
         draw=lambda to: draw_pulse(pulse, "N" if options.holds == "force" else "m/s²", to),
     )  # fmt: skip
 

@@ -42,7 +42,7 @@ def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
             allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
         )  # fmt: skip
     trials = tuple(
-        Trial(found.row(k), found.notes, trace=found.trace(k, time, height), label=label)
+        Trial(found.row(k), trace=found.trace(k, time, height), label=label)
         for k, label in enumerate(labels(len(found.bounces)))
     )
     values = labelled((trial.label, trial.observables) for trial in trials)

@@ -92,7 +92,6 @@ class VideoReduction:
     optics: Optics
     found: Bounced
     notes: tuple[str, ...]
-    source: str
 
     @property
     def time(self) -> Array:
@@ -127,7 +126,7 @@ class VideoReduction:
             )
             if trace:
                 trace["angle_rad"] = 0.5 * np.pi - np.abs(self.lean[part])
-        return Trial(row, self.notes, trace=trace, label=label)
+        return Trial(row, trace=trace, label=label)
 
     def _lean_before(self, bounce: Bounce) -> Measured:
         near = self.frame <= self.frame[bounce.near[0]]
@@ -185,7 +184,7 @@ def reduce_video(
     result = VideoReduction(
         **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels),
         half_width=half, tip_radius=tip_radius, optics=optics,
-        found=_contacts(track, half, near, optics, clip.source), notes=(), source=clip.source,
+        found=_contacts(track, half, near, optics, clip.source), notes=(),
     )  # fmt: skip
     return replace(result, notes=(*notes, *result.found.notes, *_flight_notes(result)))
 
