@@ -13,9 +13,8 @@ import typer
 
 from ..core.errors import InputError
 from ..core.output import write_file
-from . import studies
 from .shared.first_use import tell_first_use
-from .shared.places import folder_option, refuse_beside, writable_folder
+from .shared.places import folder_option, writable_folder
 from .shared.terminal import say
 
 if TYPE_CHECKING:
@@ -26,7 +25,6 @@ _OUT = Path("build/diagnose")
 
 
 def diagnose(
-    context: typer.Context,
     folder: Annotated[
         Path | None,
         typer.Argument(help="Recording set: a folder with set.toml, or a shipped name."),
@@ -54,27 +52,18 @@ def diagnose(
     solve: Annotated[
         bool, typer.Option("--solve", help="A named hardening or rate by finite elements too.")
     ] = False,
-    chapter5: Annotated[
-        bool, typer.Option("--chapter5", help="The thesis's oblique drops, nothing fitted.")
-    ] = False,
 ) -> None:
     """Compare recordings with the simulation and say what physics is missing, if any.
 
     Writes verdict.json (for programs) and report.html (for people) into OUT, by default
     build/diagnose/SET, and prints the finding.
     """
-    if chapter5:
-        others = ("folder", "confirm", "law", "cautious", "assume", "quiet", "report", "solve")
-        refuse_beside(context, "beside --chapter5", *others)
-        studies.needed_for("`dentscope diagnose --chapter5`")
-        studies.module("chapter5").demonstration(out or _OUT / "chapter5", seed)
-        return
     from ..recordings.shipped import set_folder, shipped_sets
 
     if folder is None:
         raise InputError(
             "no recording set", source="command line", key="FOLDER",
-            allowed=f"a folder, --chapter5, or a shipped set: {', '.join(shipped_sets())}",
+            allowed=f"a folder, or a shipped set: {', '.join(shipped_sets())}",
         )  # fmt: skip
     from ..recordings import read
 

@@ -19,7 +19,6 @@ from .shared.terminal import show_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..fitting import ResidualTable, Table
     from ..models.fitted import ClosedForm
     from ..models.hardening import HardeningLaw
 
@@ -45,10 +44,6 @@ def fit(
             "--publish", help="Also replace the coefficients that the laws use; a checkout."
         ),
     ] = False,
-    compare: Annotated[
-        bool,
-        typer.Option("--compare", help="Also fit simpler forms and the thesis's own; a checkout."),
-    ] = False,
     only: Annotated[
         str,
         typer.Option(
@@ -69,15 +64,14 @@ def fit(
     if publish:
         studies.needed_for("`dentscope fit --publish`")
     if judge is not None:
-        refuse_beside(context, "beside --judge", "campaigns", "out", "compare", "only")
+        refuse_beside(context, "beside --judge", "campaigns", "out", "only")
         return _judge(judge, console, publish=publish)
     if one_of(only, ("", "hardening"), key="--only"):
-        refuse_beside(context, "beside --only", "compare")
         return _refit_hardening(_files(campaigns), out, console, publish=publish)
-    return _refit(_files(campaigns), out, console, publish=publish, compare=compare)
+    return _refit(_files(campaigns), out, console, publish=publish)
 
 
-def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
+def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
     from ..fitting.coefficients import write_coefficients
     from ..fitting.refit import refit
@@ -102,10 +96,7 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     _show(console, uncertainty_rows(stated_within(content)))
     if found.hardens:
         _show_hardening(console, content)
-    more = _compared(content, found.table, found.turns, out, console) if compare else []
-    page = write_report(
-        result, content, found.table, found.turns, out, validation=found.validation, more=more
-    )
+    page = write_report(result, content, found.table, found.turns, out, validation=found.validation)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
         _publish(content, out)
@@ -149,21 +140,6 @@ def _show_hardening(console: Console, content: dict[str, Any]) -> None:
     columns |= {name: one["errors"] for name, one in found["judged"].items()}
     _show(console, hardening_rows(columns))
     _show(console, uncertainty_rows({k: one["within"] for k, one in found["judged"].items()}))
-
-
-def _compared(
-    content: dict[str, Any], table: Table, turns: ResidualTable, out: Path, console: Console
-) -> list[str]:
-    """Sections of the report: fits of simpler forms and of the thesis's own."""
-    studies.needed_for("`dentscope fit --compare`")
-    from ..studies.closed_form.terms import compare_forms, terms_section
-    from ..studies.thesis.refitted import refit_all, thesis_section
-
-    console.print("fitting simpler forms and the thesis's own ...")
-    start = {k: v["value"] for k, v in content["coefficients"].items()}
-    out.mkdir(parents=True, exist_ok=True)
-    terms = terms_section(compare_forms(table, turns, start=start), out)
-    return [terms, thesis_section(refit_all(table, turns))]
 
 
 def _publish(content: dict[str, Any], out: Path) -> None:

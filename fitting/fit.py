@@ -7,13 +7,13 @@ by combination). The derivatives are exact: the law is evaluated on complex numb
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..core.arrays import Array, Integers, Mask
+from ..core.arrays import Array, Integers
 from ..core.errors import COMPLETED, Ending, Outcome
 from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
@@ -25,7 +25,7 @@ from .rules import RULES
 from .table import ResidualTable, Table
 
 ENOUGH = RULES.form_settled
-"""Relative change of the misfit at which a fit for comparison or cross-validation ends."""
+"""Relative change of the misfit at which a fit of cross-validation ends."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,6 @@ class FormFit:
         Allowing for rows of one combination that move together, shape (n, n).
     errors
         Errors on the fitted rows.
-    held
-        Coefficients that were held at their start.
     outcome
         How the regression ended.
     """
@@ -51,7 +49,6 @@ class FormFit:
     covariance: Array
     errors: Errors
     outcome: Outcome
-    held: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def law(self) -> ClosedForm:
@@ -64,7 +61,6 @@ def fit_tables(
     table: Table,
     turns: ResidualTable,
     *,
-    held: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     change: float = 1e-8,
 ) -> FormFit:
@@ -74,26 +70,20 @@ def fit_tables(
     ----------
     table, turns
         Rows of the campaign, from `read_tables`.
-    held
-        Coefficients that keep the given value, for comparing simpler forms.
     start
         Where to start; `form.START` if not given.
     change
         Relative change of the misfit at which the regression ends.
     """
-    held = dict(held or {})
-    first = np.array([{**START, **(start or {}), **held}[name] for name in COEFFICIENTS])
-    free = np.array([name not in held for name in COEFFICIENTS])
-    values, jacobian, misfit, ok = _regress(table, turns, first, free, change=change)
+    first = np.array([{**START, **(start or {})}[name] for name in COEFFICIENTS])
+    values, jacobian, misfit, ok = _regress(table, turns, first, change=change)
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 4)])
-    covariance = np.zeros((len(values), len(values)))
-    covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
+    covariance = covariance_of(jacobian, misfit, clusters)
     return FormFit(
         values=values,
         standard_errors=np.sqrt(np.maximum(np.diag(covariance), 0.0)),
         covariance=covariance,
         errors=errors_of(predict(values, table, turns), table, turns),
-        held=held,
         outcome=COMPLETED
         if ok
         else Outcome(Ending.NOT_CONVERGED, "the regression ran out of steps.", "Look at the data."),
@@ -101,36 +91,27 @@ def fit_tables(
 
 
 def _regress(
-    table: Table,
-    turns: ResidualTable,
-    first: Array,
-    free: Mask,
-    *,
-    change: float = 1e-8,
+    table: Table, turns: ResidualTable, first: Array, *, change: float
 ) -> tuple[Array, Array, Array, bool]:
     """Minimise until the misfit changes by less than `change`, relatively."""
     low, high = np.array([LIMITS[name] for name in COEFFICIENTS]).T
     inside = np.clip(first, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
-    residual = _misfit_of(table, turns, first, free)
+    residual = _misfit_of(table, turns)
     found = least_squares(
         residual,
-        inside[free],
+        inside,
         jac=lambda x: _complex_step(residual, x),
-        bounds=(low[free], high[free]),
+        bounds=(low, high),
         x_scale="jac",
         loss="soft_l1",
         ftol=change,
         max_nfev=300,
     )
-    values = first.copy()
-    values[free] = found.x
     plain = residual(found.x)
-    return values, _complex_step(residual, found.x), plain, bool(found.success)
+    return found.x, _complex_step(residual, found.x), plain, bool(found.success)
 
 
-def _misfit_of(
-    table: Table, turns: ResidualTable, first: Array, free: Mask
-) -> Callable[[Any], Any]:
+def _misfit_of(table: Table, turns: ResidualTable) -> Callable[[Any], Any]:
     """Weighted misfit, form minus data.
 
     Of ln F, ln a, share, residual depth, the sphere's residual, exponent, ln of the energy back.
@@ -141,9 +122,7 @@ def _misfit_of(
     unit_F, unit_a = (np.hypot(RULES.form_unit, ripple) for ripple in ripple_of(table))
 
     def misfit(x: Any) -> Any:
-        values = first.astype(np.result_type(x, float))
-        values[free] = x
-        p = predict(values, table, turns)
+        p = predict(x, table, turns)
         return np.concatenate(
             [
                 np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / unit_F,

@@ -141,7 +141,6 @@ def write_report(
     folder: Path,
     *,
     validation: Sequence[tuple[str, Errors]] = (),
-    more: Sequence[str] = (),
 ) -> Path:
     """Write the page and its pictures into `folder`.
 
@@ -153,8 +152,6 @@ def write_report(
         Where the report goes.
     validation
         Names of laws and their errors on cases that no fit reads, if the campaign holds any.
-    more
-        Further sections, markdown.
     """
     from . import pictures
 
@@ -187,7 +184,6 @@ def write_report(
         markdown(domain_rows(content, "quantity")),
         "## Coefficients\n",
         markdown(coefficient_rows(content)),
-        *more,
     ]
     return write_file(folder / "report.md", "\n".join(parts))
 

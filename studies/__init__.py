@@ -8,7 +8,7 @@ calibration    where truths lie in their posteriors: of prior draws, and (at_dat
 interventions  known effects of real recordings concealed, diagnosed, judged by a plan
 synthetic      rendered clips, markers, scans and sounds with a known truth
 campaign       gallery, claims and trends of the finite-element campaign
-closed_form    what the terms of the closed forms are worth
+closed_form    their page
 oracle         a second integrator of impacts; lammps: balls in LAMMPS
 thesis         the thesis again: figures, errata, forms as printed, chapters 3 to 5
 """

@@ -99,7 +99,6 @@ IMPACT = (
     Use("metal kharaz-2001-oblique --out metal", "elastic-plastic", 2),
     Use("diagnose kharaz-2001-oblique --quiet --out diagnosis", "verdict.json"),
     Use("diagnose absent", "leeb-steel-300hv", 2),
-    Use("diagnose --chapter5", "checkout", 2),
     Use("verify", "checkout", 2),
     Use("figures", "checkout", 2),
     Use("proof run", "checkout", 2),

@@ -1,1 +1,1 @@
-"""Studies of the closed forms: what their terms are worth, and their page in the docs."""
+"""The page of the closed forms in the docs."""

@@ -1,12 +1,9 @@
-"""Chapter 5 of the thesis: tables of `dentscope inverse` and `diagnose --chapter5`."""
+"""Chapter 5 of the thesis: tables of `dentscope inverse`."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
-
-import typer
 
 from ...cli.laws import laws_named
 from ...cli.shared.terminal import show_table
@@ -71,15 +68,3 @@ def tables(console: Any, names: list[str]) -> None:
         "and sliding length of 20 degrees.",
         soft_wrap=True,
     )
-
-
-def demonstration(out: Path, seed: int) -> None:
-    """Print and draw the oblique drops beside explanations of which nothing is fitted."""
-    from ..thesis.demonstration import demonstrate
-    from ..thesis.demonstration_report import draw, table
-
-    found = demonstrate(seed=seed)
-    for line in table(found):
-        typer.echo(line)
-    draw(found, out / "chapter5.png")
-    typer.echo(f"\n{out / 'chapter5.png'}")

@@ -35,7 +35,7 @@ def test_workshop_commands_elsewhere_are_hidden_and_say_where_to_get_them(monkey
         CliRunner().invoke(app, line, catch_exceptions=False, standalone_mode=False)
 
 
-@pytest.mark.parametrize("line", [["impact"], ["inverse"], ["diagnose", "--chapter5"]])
+@pytest.mark.parametrize("line", [["impact"], ["inverse"]])
 def test_commands_without_a_file_need_the_workshop(monkeypatch, capsys, line):
     monkeypatch.setattr(studies, "present", lambda: False)
     assert run(line) == 2
