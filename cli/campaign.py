@@ -201,8 +201,7 @@ for command in (
     campaign_data.repair,
 ):
     app.command()(command)
-for _name in ("campaign gallery", "campaign reproduction"):
-    studies.add(app, _name)
+studies.add(app, "campaign reproduction")
 
 
 def _forecast(todo: list[Any], store: Any, workers: int) -> tuple[Any, float]:

@@ -22,7 +22,6 @@ COMMANDS = {
     "verify": "verify",
     "proof": "proof",
     "challenge": "challenge",
-    "campaign gallery": "campaign",
     "campaign reproduction": "campaign",
 }
 """What the user types after `dentscope`, and the module of the workshop that holds it."""

@@ -9,6 +9,6 @@ interventions  known effects of real recordings concealed, diagnosed, judged by 
 synthetic      rendered clips, markers, scans and sounds with a known truth
 campaign       gallery, claims and trends of the finite-element campaign
 closed_form    their page
-oracle         a second integrator of impacts; lammps: balls in LAMMPS
-thesis         the thesis again: figures, errata, forms as printed, chapters 3 to 5
+oracle         a second integrator of impacts
+thesis         the thesis again: figures, chapters 3 to 5
 """

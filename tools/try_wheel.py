@@ -72,7 +72,6 @@ SOLVER = (
     Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
     Use("campaign repair --out run", "cases are whole"),
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
-    Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
     Use("export law --out sources", "dentscope_contact.f90"),
     Use(

@@ -1,9 +1,9 @@
 """The thesis's own model: sphere and flat both deform and yield (Eqs. 2.1-2.43), and 3.5-3.7.
 
 The printed equations carry misprints; this is the reading in which the text, the limits and the
-figures of chapters 2 to 5 agree (docs/thesis/errata.md; as printed: `as_printed`). The weak body w
-is the sphere for Sy* <= 1.07 and the flat above; its share of the approach gives its own
-deformation, and the other body's share the updated radius R' (2.18).
+figures of chapters 2 to 5 agree (docs/thesis/errata.md). The weak body w is the sphere for Sy* <=
+1.07 and the flat above; its share of the approach gives its own deformation, and the other body's
+share the updated radius R' (2.18).
 
 As it stands the model steps up by 29 to 43 % where Hertz ends, at Delta = 1.9 delta_y, steps up by
 another 22 % at delta_n = 3.7, and is meant for delta_n of 5 and more. Between delta_n = 1.9 and 8

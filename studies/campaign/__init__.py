@@ -1,1 +1,1 @@
-"""Campaign: gallery, the claims of chapter 2 decided, trends over the pairs."""
+"""Campaign: the claims of chapter 2 decided, trends over the pairs."""

@@ -1,4 +1,4 @@
-"""`dentscope campaign gallery` and `reproduction`: what a sweep shows, beside the thesis."""
+"""`dentscope campaign reproduction`: what a sweep shows, beside the thesis."""
 
 from __future__ import annotations
 
@@ -8,29 +8,12 @@ from typing import Annotated
 import typer
 
 from ...cli.campaign_data import PUBLISHED
-from ...cli.shared.places import file_option, folder_option
+from ...cli.shared.places import file_option
 
 _Data = Annotated[
     Path | None,
     typer.Option(help="A run or a folder of parts. Default: published, else own run."),
 ]
-
-
-def gallery(
-    data: _Data = None,
-    fields: Annotated[Path, typer.Option(help="Folder of a run's field files.")] = Path(
-        "build/campaign/fields"
-    ),
-    to: Annotated[Path, folder_option("Folder of the pictures.", name="--to")] = Path(
-        "build/campaign/gallery"
-    ),
-) -> None:
-    """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
-    from ..campaign.gallery import build
-
-    for picture in build(_data(data), to, fields=fields):
-        typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
-    typer.echo(f"written: {to / 'README.md'}")
 
 
 def reproduction(

@@ -14,7 +14,7 @@ from ..thesis.figures.names import CHAPTERS, FIELDS
 def figures(
     chapter: Annotated[
         list[str] | None,
-        typer.Option(help='1, 2, 3, "4 and 5" or outside; may be repeated. Default: all.'),
+        typer.Option(help='1, 2, 3 or "4 and 5"; may be repeated. Default: all.'),
     ] = None,
     fields: Annotated[
         list[str] | None,

@@ -1,10 +1,8 @@
-"""Figures 1.1-1.4: the two ways to press, the published hardness laws; and a paradox drawn."""
+"""Figures 1.2 and 1.3: the published hardness laws."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,8 +11,6 @@ from ....campaigns import CaseRecord
 from ....core.arrays import Array
 from ....models.published import hardness
 from ...plot import Entry, Picture, finish, sheet
-from ..viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
-from . import sketches
 
 _PLACES = (0.1, 0.3, 0.5)  # a/R at which a law's deviation is told
 _PLASTIC = 110.0  # w from which a contact counts as fully plastic (2.3.2)
@@ -23,7 +19,6 @@ _PLASTIC = 110.0  # w from which a contact counts as fully plastic (2.3.2)
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """The figures; `records` are the stored finite-element cases, possibly none."""
     return [
-        *sketches.chapter_1(),
         _hardness(
             "1.2",
             "indentation",
@@ -41,51 +36,7 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
             "The text calls 1.15 the improved fit. The thesis's points are adjusted for the "
             "radius of curvature, it does not say how; ours are not.",
         ),
-        _paradox(),
     ]
-
-
-def _paradox() -> Picture:
-    """Force over depth of an impact on spring and dashpot, and by Hunt and Crossley."""
-    mass, stiffness, damping, speed = 0.05, 2e6, 120.0, 1.3
-    told = paradox(mass=mass, stiffness=stiffness, damping=damping, speed=speed)
-    alpha = alpha_for(told.restitution_at_return, speed=speed)
-    # stiff enough to reach about the depth of the linear spring
-    deepest = speed * math.sqrt(mass / stiffness)
-    hertzian = 1.25 * mass * speed**2 / deepest**2.5
-    made, (axis,) = sheet()
-    for name, force in (
-        ("Kelvin and Voigt", partial(kelvin_voigt, stiffness=stiffness, damping=damping)),
-        ("Hunt and Crossley", partial(hunt_crossley, stiffness=hertzian, alpha=alpha)),
-    ):
-        d, rate = _impact(force, mass=mass, speed=speed)
-        axis.plot(1e6 * d, force(d, rate), label=f"{name}, e = {-rate[-1] / speed:.3f}")
-    axis.axhline(0.0, color="0.5", lw=0.8)
-    axis.plot(0.0, told.force_at_touch, "C0o", label="a force with nothing pressed in")
-    axis.plot(1e6 * told.depth_at_zero_force, 0.0, "C0s", label="a depth without any yield")
-    finish(axis, x="depth [um]", y="force [N]")
-    note = (
-        f"{mass:g} kg at {speed:g} m/s. Spring and dashpot push with {told.force_at_touch:.0f} N "
-        f"at first touch and hold back with {-told.pull_at_return:.0f} N at the end; let go where "
-        f"the force vanishes, a depth of {1e6 * told.depth_at_zero_force:.0f} um stays. Hunt and "
-        "Crossley's damping, chosen for the same restitution, has neither, and no dent."
-    )
-    return Picture("viscous", "The paradox of Kelvin and Voigt", made, note)
-
-
-def _impact(force: Callable[[Any, Any], Array], *, mass: float, speed: float) -> list[Array]:
-    """Depth and rate of an impact from first touch until the depth is zero again."""
-    from scipy.integrate import solve_ivp
-
-    def back(_t: float, y: Array) -> float:
-        return float(y[0])
-
-    back.terminal, back.direction = True, -1.0  # type: ignore[attr-defined]
-    found = solve_ivp(
-        lambda _t, y: [y[1], -float(force(y[0], y[1])) / mass],
-        (0.0, 1.0), [0.0, speed], events=back, max_step=5e-6, rtol=1e-8, atol=1e-12,
-    )  # fmt: skip
-    return list(found.y)
 
 
 def _hardness(

@@ -15,7 +15,7 @@ from ....models import LAWS, critical_depth, critical_force, law_named
 from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, percent, sheet
 from .. import chapter3
-from . import fields, rendered, sketches
+from . import fields
 from .claims import judged, ranked
 
 _ORIGINAL = ("jackson-green-2007", "kogut-etsion", "kogut-komvopoulos", "ghaednia", "fitted")
@@ -28,8 +28,6 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     updated = [law_named(name) for name in _UPDATED] + [LAWS["ghaednia"]]
     first = laws(*_ORIGINAL, "thornton-ning")
     return [
-        *sketches.chapter_3(),
-        *rendered.pictures(),
         *fields.chapter_3_again(records),
         _force(found),
         _residual(found),

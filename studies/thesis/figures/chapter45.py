@@ -14,7 +14,7 @@ from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, sheet
 from .. import chapter5
 from ..chapter3 import REFERENCE
-from . import chapter4, scars, sketches, tables
+from . import chapter4, scars, tables
 from .claims import judged
 from .thesis_rod import scene_at
 
@@ -24,7 +24,6 @@ Histories = list[tuple[ContactLaw, Trace]]
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """Redraw figures and tables; nothing here needs finite elements."""
     return [
-        *sketches.chapters_4_and_5(),
         tables.properties("4.1"),
         tables.legend(chapter4.NINE),
         *chapter4.pictures(),

@@ -12,17 +12,13 @@ from ....core.errors import InputError
 from ....core.output import write_file
 from ....models import DomainWarning
 from ...plot import Entry, Picture, Table
-from .. import errata
-from . import chapter1, chapter2, chapter3, chapter45, outside
+from . import chapter1, chapter2, chapter3, chapter45
 from .names import CHAPTERS
 
 _PICTURES: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = dict(
     zip(
         CHAPTERS,
-        (
-            chapter1.pictures, chapter2.pictures, chapter3.pictures, chapter45.pictures,
-            outside.pictures,
-        ),
+        (chapter1.pictures, chapter2.pictures, chapter3.pictures, chapter45.pictures),
         strict=True,
     )
 )  # fmt: skip
@@ -38,19 +34,22 @@ from our own numbers, its statements are checked and its misprints listed.
 """
 _ALSO = """\
 | [Claims](claims.md) | what chapter 2 says, checked on our finite elements |
-| [Errata](errata.md) | misprints and contradictions, each shown with numbers |
+| [Errata](errata.md) | misprints and contradictions |
 
 The line under each figure says whether it agrees, by how much it differs, and why; it is computed
 with the picture. A law's name is that of `dentscope laws`; in every figure it keeps its colour
 (table 4.2). `make figures` draws all of it again, `dentscope figures --chapter 2` one chapter.
 
+## Not drawn, or without the thesis's own data
+
 """
 
 NOT_REDRAWN = {
-    "3.2-3.6": "the photographs, films and scans are not published; rendered ones stand for them",
+    "1.1, 1.4, 3.1, 4.1-4.3, 5.1, 5.2": "sketches, not drawn again",
+    "3.2-3.6": "photographs, films and scans, which are not published",
     "5.4-5.6": "the measured scars are not published; predicted ones are drawn",
 }
-"""Figures of the thesis that are drawn without its own data, with the reason."""
+"""Figures of the thesis that are not drawn, or without its own data, with the reason."""
 
 
 def stored_cases(root: Path) -> list[CaseRecord]:
@@ -67,7 +66,7 @@ def stored_cases(root: Path) -> list[CaseRecord]:
 
 
 def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
-    """Draw `chapters` into `folder`, a page each, and write its README.md and the errata.
+    """Draw `chapters` into `folder`, a page each, and write its README.md.
 
     Raises
     ------
@@ -90,36 +89,26 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
         write_file(folder / page_of(chapter), _page(chapter, entries, rests))
         drawn += entries
     write_file(folder / "README.md", _index(folder))
-    if tuple(chapters) == CHAPTERS:
-        errata.write(folder / "errata.md")
     return drawn
 
 
 def page_of(chapter: str) -> str:
     """File name of a chapter's page."""
-    return "outside.md" if chapter == "outside" else f"chapter-{chapter.replace(' and ', '-')}.md"
+    return f"chapter-{chapter.replace(' and ', '-')}.md"
 
 
 def _order(entry: Entry) -> tuple[int, int, bool]:
     """By chapter and number, figures before tables of the same number."""
-    if not entry.number[0].isdigit():
-        return (99, 0, False)
     first, second = entry.number.split(".")
     return (int(first), int(second), isinstance(entry, Table))
 
 
 def _name(entry: Entry) -> str:
-    if isinstance(entry, Table):
-        return f"Table {entry.number}"
-    return f"Figure {entry.number}" if entry.number[0].isdigit() else entry.number.upper()
-
-
-def _title(chapter: str) -> str:
-    return "Beside another program" if chapter == "outside" else f"Chapter {chapter}"
+    return f"{'Table' if isinstance(entry, Table) else 'Figure'} {entry.number}"
 
 
 def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
-    lines = [f"# {_title(chapter)}\n\nFinite elements: {rests}.\n"]
+    lines = [f"# Chapter {chapter}\n\nFinite elements: {rests}.\n"]
     for one in entries:
         name = _name(one)
         shown = one.markdown if isinstance(one, Table) else f"![{name}]({one.file})"
@@ -128,7 +117,7 @@ def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
 
 
 def _index(folder: Path) -> str:
-    """Contents of all pages that there are, and what is drawn without the thesis's data."""
+    """Contents of all pages that there are, and what is not drawn, or without the thesis's data."""
     parts = [_HEAD]
     for chapter in CHAPTERS:
         page = folder / page_of(chapter)
@@ -136,9 +125,8 @@ def _index(folder: Path) -> str:
             continue
         names = re.findall(r"^## (\w+ ?[\d.]*)", page.read_text("utf-8"), re.MULTILINE)
         count = len([name for name in names if name.startswith("Figure")])
-        told = f"{count} figures" if count > 1 else "LAMMPS's elastic-plastic law beside ours"
         tables = [name.split()[1] for name in names if name.startswith("Table")]
-        told += f", tables {', '.join(tables)}" if len(tables) > 1 else ""
-        parts.append(f"| [{_title(chapter)}]({page.name}) | {told} |\n")
+        told = f", tables {', '.join(tables)}" if len(tables) > 1 else ""
+        parts.append(f"| [Chapter {chapter}]({page.name}) | {count} figures{told} |\n")
     left = "\n".join(f"- {number}: {reason}" for number, reason in NOT_REDRAWN.items())
-    return "".join([*parts, _ALSO, "## Without the thesis's own data\n\n", left, "\n"])
+    return "".join([*parts, _ALSO, left, "\n"])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-CHAPTERS = ("1", "2", "3", "4 and 5", "outside")
-"""Chapters in reading order; the last compares with another program's law."""
+CHAPTERS = ("1", "2", "3", "4 and 5")
+"""Chapters in reading order."""
 
 FIELDS = ("2.2", "2.3", "2.4", "3.7")
 """Figures whose stress field is solved."""
