@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.core import Ending, Material
+from dentscope.core import Material
 from dentscope.dynamics import (
     Approach,
-    ForceTransform,
     Friction,
     Scene,
     Settings,
@@ -166,60 +165,6 @@ def test_batch_gives_what_single_calls_give() -> None:
     np.testing.assert_array_equal(
         rows[1, : len(c.OBSERVABLES)], list(strike(scene).observables.values())
     )
-
-
-def test_neutral_transforms_leave_every_bit() -> None:
-    rng = np.random.default_rng(5)
-    for number in range(3):
-        scene = random_scene(rng, number)
-        neutral = scene.with_(
-            force=ForceTransform(damping=0.0, radiation=0.0, given_back=1.0), support=Support(),
-            friction=Friction(scene.friction.mu, mu_static=scene.friction.mu, speed=0.3),
-        )  # fmt: skip
-        plain = scene.with_(support=Support())
-        np.testing.assert_array_equal(
-            list(strike(neutral).observables.values()), list(strike(plain).observables.values())
-        )
-
-
-def test_transforms_move_restitution_as_declared() -> None:
-    scene = random_scene(np.random.default_rng(5), 1).with_(
-        support=Support(), friction=Friction(0.0), approach=Approach(1.0), gravity=0.0
-    )
-    e = strike(scene).restitution
-    assert strike(scene.with_(force=ForceTransform(damping=0.1))).restitution < e
-    assert strike(scene.with_(force=ForceTransform(recovery_factors=(0.8,) * 13))).restitution < e
-    harder = ForceTransform(factors=(1.2,) * 13, recovery_factors=(1.2 ** (2.0 / 3.0),) * 13)
-    assert strike(scene.with_(force=harder)).residual_m < strike(scene).residual_m
-    soft = scene.with_(support=Support(mass=1.0, stiffness=1e6))
-    assert strike(soft).support_energy_J > 0.0
-
-
-def test_budget_ends_in_an_outcome() -> None:
-    scene = random_scene(np.random.default_rng(11), 1)
-    assert strike(scene, Settings(max_steps=5)).outcome.ending is Ending.STEP_LIMIT
-
-
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_second_blow_on_the_same_spot_meets_the_hardened_crater(law: object) -> None:
-    ball = Striker(mass=0.03, tip_radius=0.01)
-    scene = scene_of(
-        law, sphere=STEEL, flat=IRON, striker=ball, approach=Approach(1.0), gravity=0.0
-    )
-    first = strike(scene)
-    again = strike(scene.with_(spot=first.spot))
-    if law is HERTZ:
-        assert again.restitution == pytest.approx(first.restitution, abs=1e-8)
-        return
-    # The crater gives back the elastic energy of the first blow and then loads on: together both
-    # blows end where one of speed v sqrt(2 - e^2) ends, and rebound with that one's energy.
-    total = math.sqrt(2.0 - first.restitution**2)
-    single = strike(scene.with_(approach=Approach(total)))
-    assert again.residual_flat_m == pytest.approx(single.residual_flat_m, rel=1e-6)
-    assert again.restitution == pytest.approx(single.restitution * total, rel=1e-6)
-    # Elsewhere the metal is fresh: the first blow again.
-    elsewhere = strike(scene.with_(spot=Spot()))
-    assert elsewhere.residual_flat_m == first.residual_flat_m
 
 
 def test_flattened_tip_counts_in_the_next_trial() -> None:

@@ -237,6 +237,20 @@ def told(content, tmp_path):
     return found.name, found.table(exact=True), found.checks(), setup.about, len(found.rows), text
 
 
+def beside(place):
+    """Set-ups without a key, or with another value of it, and with it."""
+    base, *values = ACTS[place]
+    if place[0].endswith(".hardening]"):
+        base = base.replace("[strikers", "Sy_Pa = 3e8\n[strikers").replace(
+            'laws = ["fitted"]\n', ""
+        )
+        place = ("[target]", "hardening")
+    before = tomllib.loads(base) if len(values) == 1 else with_key(base, *place, values[0])
+    if place[1] == "rigid":
+        before = tomllib.loads(BALL)
+    return before, with_key(base, *place, values[-1])
+
+
 @pytest.mark.parametrize("key", keys_of("impact"), ids=lambda k: f"{k.table}{k.name}")
 def test_a_key_of_an_impact_acts_or_is_refused(key, tmp_path):
     place = (key.table, key.name)
@@ -249,17 +263,7 @@ def test_a_key_of_an_impact_acts_or_is_refused(key, tmp_path):
         assert "does nothing here" in str(caught.value)
         assert "dentscope diagnose" in str(caught.value)
         return
-    base, *values = ACTS[place]
-    table = key.table
-    if table.endswith(".hardening]"):
-        base = base.replace("[strikers", "Sy_Pa = 3e8\n[strikers").replace(
-            'laws = ["fitted"]\n', ""
-        )
-        place = ("[target]", "hardening")
-    before = tomllib.loads(base) if len(values) == 1 else with_key(base, *place, values[0])
-    if key.name == "rigid":
-        before = tomllib.loads(BALL)
-    after = with_key(base, *place, values[-1])
+    before, after = beside(place)
     assert told(before, tmp_path) != told(after, tmp_path)
 
 
@@ -356,18 +360,8 @@ def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_p
     place = (key.table, key.name)
     if place in ONE | REFUSED.keys() or key.table == TWIN or key.name in _TEXTS:
         return
-    base, *values = ACTS[place]
-    table, name = place
-    if table.endswith(".hardening]"):
-        base = base.replace("[strikers", "Sy_Pa = 3e8\n[strikers").replace(
-            'laws = ["fitted"]\n', ""
-        )
-        table, name = "[target]", "hardening"
-    before = tomllib.loads(base) if len(values) == 1 else with_key(base, table, name, values[0])
-    if key.name == "rigid":
-        before = tomllib.loads(BALL)
     told = []
-    for content in (before, with_key(base, table, name, values[-1])):
+    for content in beside(place):
         file = tmp_path / "ball.toml"
         file.write_text(tomlkit.dumps(content))
         try:

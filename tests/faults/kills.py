@@ -1,20 +1,18 @@
 """kill -9 of the coordinator and of workers at random moments, through the product's own pool.
 
-`python tests/faults/kills.py --kills 200` runs a campaign of the solver itself, at its lowest
-accuracy, and kills in turn in every phase of it: while the interpreter starts, the run is read,
-cases are solved and handed over, the image of a case is made, its draft written and renamed, a case
-told as stored. Each phase announces itself on a board; a kill waits for one and comes at a random
-moment after that. Calls that change files are drawn out by random pauses, so that kills land
-before, within and after them. After every kill what was told as stored must be there, and every
-number must be that of a run that nobody disturbed, bit by bit.
+`python tests/faults/kills.py --kills 200` runs a campaign of a solver that waits a third of a
+second, and kills in turn in every phase of it: while the interpreter starts, the run is read, cases
+are solved and handed over, the image of a case is made, its draft written and renamed, a case told
+as stored. Each phase announces itself on a board; a kill waits for one and comes at a random moment
+after that. Calls that change files are drawn out by random pauses, so that kills land before,
+within and after them. After every kill what was told as stored must be there, and every number must
+be that of a run that nobody disturbed, bit by bit.
 
 Most coordinators and workers are forked from a process that has everything loaded; those that are
-killed in their start are new interpreters, as the product starts them. `--stand-in` takes a solver
-that waits a third of a second instead, `--dask` two workers of a dask scheduler.
+killed in their start are new interpreters, as the product starts them.
 """
 
 import argparse
-import json
 import multiprocessing
 import os
 import random
@@ -25,8 +23,8 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from unittest import mock
@@ -35,12 +33,12 @@ import disk_faults
 import numpy as np
 from dentscope import fem
 from dentscope.campaigns import Case, Design, Store, read_curves, run_design, standard_case
-from dentscope.campaigns.executor import DaskExecutor, LocalExecutor, solve_specification
+from dentscope.campaigns.executor import LocalExecutor
 from dentscope.core import Material, Pair
 
 PAUSE_S = 0.03
 PATIENCE_S = 120.0
-BOARD, LOG, SCHEDULER = "BOARD", "COMPUTED", "SCHEDULER"
+BOARD, LOG = "BOARD", "COMPUTED"
 SPANS_S = {
     "starts": 4.0, "reads": 0.05, "waits": 0.5, "makes the image": 0.03, "writes the draft": 0.3,
     "renames the draft": 0.1, "tells": 0.01, "solves": 0.6, "hands over": 0.02,
@@ -54,16 +52,6 @@ SHARES = {
     ("coordinator", "tells"): 8, ("worker", "solves"): 22, ("worker", "hands over"): 12,
 }  # fmt: skip
 """How many of 200 kills wait for each phase."""
-
-
-def real(n):
-    """Cases that yield, no deeper than it takes for that: each kill waits for a solve or two."""
-    flat = Material(E=200e9, nu=0.3, Sy=1e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=2e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
-    return tuple(
-        standard_case(f"c{i}", pair, deepest=8e-6, n_depths=2, accuracy=fem.Accuracy.smoke())
-        for i, pair in enumerate(pairs)
-    )
 
 
 def made(n):
@@ -106,20 +94,11 @@ def board():
     return Board(Path(os.environ[BOARD]))
 
 
-def work(specification, time_limit_s):
-    """The product's own work, announced, and a line for each case that was begun."""
-    board().tell("worker", "solves")
-    with open(os.environ[LOG], "a", encoding="utf-8") as log:  # one write: never torn
-        log.write(f"{specification['name']}\n")
-    found = solve_specification(specification, time_limit_s)
-    board().tell("worker", "hands over")
-    return found
-
-
 def stand_in(specification, time_limit_s):
+    """A solver that waits, announced, with a line for each case that was begun."""
     board().tell("worker", "solves")
     case = Case.from_specification(specification)
-    with open(os.environ[LOG], "a", encoding="utf-8") as log:
+    with open(os.environ[LOG], "a", encoding="utf-8") as log:  # one write: never torn
         log.write(f"{case.name}\n")
     time.sleep(random.uniform(0.1, 0.5))
     board().tell("worker", "hands over")
@@ -157,18 +136,7 @@ class Announced:
         yield from self.executor.run(cases, time_limit_s=time_limit_s)
 
 
-def executor_of(solver):
-    """Where cases are computed: two processes of this machine, or a scheduler's."""
-    # by its module's name: a dask worker imports it
-    import kills
-
-    does = kills.work if solver else kills.stand_in
-    if SCHEDULER in os.environ:
-        return replace(DaskExecutor.connect(os.environ[SCHEDULER], timeout_s=60.0), work=does)
-    return LocalExecutor(workers=2, work=does)
-
-
-def coordinate(path, cases, *, solver, forked):
+def coordinate(path, cases, *, forked):
     """Run the campaign to its end; tell each stored case in a file beside it."""
     told = os.open(path.with_suffix(".told"), os.O_CREAT | os.O_APPEND | os.O_WRONLY)
     put, pause = Store.put, random.Random(os.getpid())
@@ -194,7 +162,7 @@ def coordinate(path, cases, *, solver, forked):
             )
         run_design(
             Design("faults", "", lambda: cases), path,
-            executor=Announced(executor_of(solver)),
+            executor=Announced(LocalExecutor(workers=2, work=stand_in)),
             time_limit_s=600.0, report=tell,
         )  # fmt: skip
 
@@ -209,60 +177,29 @@ def announce_at(folder):
     os.environ |= {BOARD: str(folder / "board"), LOG: str(folder / "computed")}
 
 
-@contextmanager
-def dask_cluster(folder):
-    """A scheduler and two workers, whose nannies start them again when they are killed."""
-    file = folder / "scheduler.json"
-    os.environ["PYTHONPATH"] = str(Path(__file__).parent)
-    announce_at(folder)
-    common = ["--no-dashboard", "--scheduler-file", str(file)]
-    commands = {"scheduler": ["--port", "0", "--host", "127.0.0.1"],
-                "worker": ["--nthreads", "1", "--nworkers", "2"]}  # fmt: skip
-    processes = [
-        subprocess.Popen(
-            [sys.executable, "-m", f"distributed.cli.dask_{name}", *options, *common],
-            cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )
-        for name, options in commands.items()
-    ]  # fmt: skip
-    try:
-        while not (file.exists() and file.read_text().endswith("}")):
-            time.sleep(0.1)
-        os.environ[SCHEDULER] = json.loads(file.read_text())["address"]
-        yield
-    finally:
-        for process in reversed(processes):
-            process.terminate()
-            process.wait(timeout=60.0)
-
-
 @dataclass
 class Run:
     """A coordinator, and the folder of its campaign."""
 
     path: Path
     count: int
-    solver: bool
     pid: int = 0
     forked: bool = False
     code: int | None = None
 
     def begin(self, *, forked):
         self.forked, self.code = forked, None
-        if SCHEDULER not in os.environ:  # whose workers outlast a campaign, with their board
-            announce_at(self.path.parent)
+        announce_at(self.path.parent)
         if not forked:
-            options = [] if self.solver else ["--stand-in"]
             command = [sys.executable, __file__, "--coordinate", str(self.path)]
-            self.process = subprocess.Popen([*command, "--cases", str(self.count), *options])
+            self.process = subprocess.Popen([*command, "--cases", str(self.count)])
             self.pid = self.process.pid
             return
         self.pid = os.fork()
         if not self.pid:
             try:
                 board.cache_clear()
-                cases = real(self.count) if self.solver else made(self.count)
-                coordinate(self.path, cases, solver=self.solver, forked=True)
+                coordinate(self.path, made(self.count), forked=True)
             except BaseException:
                 traceback.print_exc()
                 os._exit(1)
@@ -280,9 +217,6 @@ class Run:
 
     def workers(self):
         """Numbers of its worker processes."""
-        if SCHEDULER in os.environ:
-            told = Path(os.environ[BOARD]).glob("worker-*")
-            return [pid for pid in (int(p.name.split("-")[1]) for p in told) if there(pid)]
         found = []
         for task in Path(f"/proc/{self.pid}/task").glob("*/children"):
             with suppress(OSError):
@@ -345,15 +279,13 @@ class Found:
         return self.lost + self.wrong + self.told_twice + self.left_over + self.unended
 
 
-def schedule(kills, seed, *, dask=False):
+def schedule(kills, seed):
     """Victims and phases that kills wait for, in a random order."""
-    # a dask worker's start is its nanny's, which no campaign waits for
-    shares = {k: n for k, n in SHARES.items() if not (dask and k == ("worker", "starts"))}
-    whole = sum(shares.values())
-    wanted = [key for key, share in shares.items() for _ in range(round(kills * share / whole))]
+    whole = sum(SHARES.values())
+    wanted = [key for key, share in SHARES.items() for _ in range(round(kills * share / whole))]
     draw = random.Random(seed)
     # an interpreter's start is dear: few of them are enough
-    rest = [key for key in shares if key[1] != "starts"]
+    rest = [key for key in SHARES if key[1] != "starts"]
     wanted += draw.choices(rest, k=max(0, kills - len(wanted)))
     draw.shuffle(wanted)
     return wanted[:kills]
@@ -388,29 +320,21 @@ def kill(run, who, phase, draw):
     return place.phase(who, victim), workers
 
 
-def inject(folder, wanted, *, count, seed, reference, forks=True, say=lambda line: None):
+def inject(folder, wanted, *, count, seed, say):
     """Do the kills that are wanted, over as many campaigns as that takes; return what happened.
 
-    Parameters
-    ----------
-    wanted
-        Victim and phase of each kill; those that are done are taken away.
-    reference
-        Curves of each case by name.
-    forks
-        Whether coordinators that are not killed in their start are forked.
+    `wanted` are victim and phase of each kill; those that are done are taken away.
     """
     draw, found = random.Random(seed), Found()
     while wanted:
         found.rounds += 1
         place = folder / str(found.rounds)
         place.mkdir()
-        run = Run(place / "run", count, solver=reference is not None)
-        _one_campaign(run, wanted, draw, found, reference=reference, forks=forks, say=say)
+        _one_campaign(Run(place / "run", count), wanted, draw, found, say)
     return found
 
 
-def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
+def _one_campaign(run, wanted, draw, found, say):
     def check():
         stored, told = run.stored(), run.told()
         found.lost += len(set(told) - stored.keys() - _failed(run))
@@ -420,11 +344,10 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
                 np.array_equal(curve[k], right[k]) for k in right
             ))
             for name, curve in stored.items()
-            for right in [(reference or _expected(run.count))[name]]
+            for right in [_expected(run.count)[name]]
         )  # fmt: skip
 
-    run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
-    computed = len(Path(os.environ[LOG]).read_text().split()) if SCHEDULER in os.environ else 0
+    run.begin(forked=not (wanted and wanted[0][1] == "starts"))
     board.cache_clear()
     while wanted and not run.ended():
         who, phase = wanted[0]
@@ -436,10 +359,9 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
         if who == "coordinator":
             while not run.ended():
                 time.sleep(0.005)
-            if SCHEDULER not in os.environ:
-                found.left_over += still_there(workers)
+            found.left_over += still_there(workers)
             check()
-            run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
+            run.begin(forked=not (wanted and wanted[0][1] == "starts"))
         say(f"kill {found.kills.total()}: {who} {died_in} (for {phase}), {found}")
     until = time.monotonic() + 10.0 * PATIENCE_S
     while not run.ended():
@@ -454,7 +376,7 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
     found.stored += len(run.stored())
     found.failed += len(_failed(run))
     found.lost += run.count - len(run.stored()) - len(_failed(run))
-    found.computed += len(Path(os.environ[LOG]).read_text().split()) - computed
+    found.computed += len(Path(os.environ[LOG]).read_text().split())
 
 
 def _failed(run):
@@ -475,26 +397,15 @@ def _expected(count):
         return {record.case.name: record.curve for record in store.read_all()}
 
 
-def undisturbed(folder, count):
-    """Curves of every case from a run of the solver that nobody kills."""
-    store = Store(folder / "undisturbed")
-    for case in real(count):
-        store.put(case, solve_specification(case.specification(), 600.0))
-    return {record.case.name: record.curve for record in store.read_all()}
-
-
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--coordinate", type=Path)
     parser.add_argument("--cases", type=int, default=8)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--stand-in", action="store_true")
-    parser.add_argument("--dask", action="store_true")
     chosen = parser.parse_args()
     if chosen.coordinate:
-        cases = made(chosen.cases) if chosen.stand_in else real(chosen.cases)
-        coordinate(chosen.coordinate, cases, solver=not chosen.stand_in, forked=False)
+        coordinate(chosen.coordinate, made(chosen.cases), forked=False)
         return
     begun = time.monotonic()
 
@@ -502,16 +413,9 @@ def main():
         sys.stdout.write(f"{time.monotonic() - begun:.0f} s: {line}\n")
         sys.stdout.flush()
 
-    with ExitStack() as held:
-        folder = Path(held.enter_context(tempfile.TemporaryDirectory()))
-        if chosen.dask:
-            held.enter_context(dask_cluster(folder))
-        reference = None if chosen.stand_in else undisturbed(folder, chosen.cases)
-        say("begun")
-        wanted = schedule(chosen.kills, chosen.seed, dask=chosen.dask)
-        found = inject(
-            folder, wanted, count=chosen.cases, seed=chosen.seed, reference=reference, say=say
-        )
+    with tempfile.TemporaryDirectory() as folder:
+        wanted = schedule(chosen.kills, chosen.seed)
+        found = inject(Path(folder), wanted, count=chosen.cases, seed=chosen.seed, say=say)
     for words, number in sorted(found.kills.items()):
         say(f"{number:4} {words}")
     say(f"{found.kills.total()} kills, {found.faults} faults: {found}")

@@ -1,18 +1,13 @@
-"""Faults that a long run meets: kills at random moments, a full disk, readers, damaged data."""
+"""Faults that a long run meets: kills in every phase, a full disk, readers beside a writer."""
 
 import os
-import random
 import shutil
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
-import h5py
 import pytest
 from dentscope.campaigns import Store, read_curves
-from dentscope.core import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -65,23 +60,6 @@ def start(path, n=200, values=48, limit=()):
     )
 
 
-def test_kills_at_random_moments_lose_no_stored_case(tmp_path):
-    path, stored, waits = tmp_path / "run", [], random.Random(5)
-    for _ in range(6):
-        process = start(path)
-        for line in process.stdout:
-            stored.append(line.split()[1])
-            if waits.random() < 0.1:
-                break
-        time.sleep(waits.random() * 0.02)
-        process.send_signal(signal.SIGKILL)
-        stored += [line.split()[1] for line in process.stdout if line.endswith("\n")]
-        process.wait()
-        process.stdout.close()
-        assert set(stored) <= {record.case.name for record in read_curves(path)}
-    assert len(stored) == len(set(stored)) > 6
-
-
 def test_readers_and_the_writer_wait_for_each_other(tmp_path):
     path = tmp_path / "run"
     process = start(path, n=40)
@@ -127,24 +105,9 @@ def test_a_file_that_may_not_grow_keeps_what_is_there(tmp_path):
     assert len(read_curves(path)) == 3
 
 
-def test_a_corrupt_dataset_is_named_in_one_line(tmp_path):
-    path = tmp_path / "run"
-    start(path, n=1, values=4000).communicate()
-    [place] = Store(path).files()
-    with h5py.File(place, "r") as file:
-        offset = file["loading/force"].id.get_chunk_info(0).byte_offset
-    with place.open("r+b") as stream:
-        stream.seek(offset)
-        stream.write(b"\xff" * 64)
-    with pytest.raises(InputError, match="damaged") as caught:
-        read_curves(path)
-    assert "\n" not in str(caught.value)
-
-
 def test_kills_of_coordinator_and_workers_lose_no_case():
-    # the two hundred kills of docs/campaign.md, with a solver that only waits
     script = ROOT / "tests" / "faults" / "kills.py"
-    command = [sys.executable, str(script), "--kills", "8", "--cases", "6", "--stand-in"]
+    command = [sys.executable, str(script), "--kills", "8", "--cases", "6"]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert "8 kills, 0 faults" in answer.stdout

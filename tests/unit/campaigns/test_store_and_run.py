@@ -5,9 +5,6 @@ import json
 import multiprocessing
 import os
 import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import h5py
@@ -353,57 +350,6 @@ def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, capsy
     assert run(["campaign", "status", "--out", str(tmp_path)]) == 0
     told = capsys.readouterr().out
     assert all(f"{path}: passed over" in told for path in strays)
-
-
-SCRIPT = """
-import sys
-from pathlib import Path
-from dentscope import fem
-from dentscope.campaigns import Design, run_design, standard_case
-from dentscope.campaigns.executor import LocalExecutor
-from dentscope.core import Material, Pair
-
-def made():
-    out = []
-    for i in range(6):
-        body = Material(E=200e9, nu=0.3, Sy=(4e8 + 1e7 * i))
-        p = Pair(sphere=body, flat=Material(E=200e9, nu=0.3, Sy=3e8), R=1e-3)
-        smoke = fem.Accuracy.smoke()
-        out.append(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke))
-    return tuple(out)
-
-if __name__ == "__main__":
-    run_design(Design("kill", "", made), Path(sys.argv[1]), executor=LocalExecutor(workers=2),
-               time_limit_s=600.0, report=lambda s: print("COMPUTED", s.case.name, flush=True))
-"""
-
-
-@pytest.mark.fe
-def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path):
-    script, path = tmp_path / "run.py", tmp_path / "run"
-    script.write_text(SCRIPT)
-    computed = []
-    for stop_after in (1, 3, None):
-        process = subprocess.Popen(
-            [sys.executable, str(script), str(path)],
-            stdout=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        )
-        for line in process.stdout:
-            computed.append(line.split()[1])
-            if stop_after is not None and len(computed) >= stop_after:
-                break
-        if stop_after is not None:
-            time.sleep(0.05)
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait(timeout=60)
-        process.stdout.close()
-    stored = [record.case.name for record in read_curves(path)]
-    assert sorted(stored) == [f"c{i}" for i in range(6)]
-    # what was reported as computed was stored, and nothing was computed a second time
-    assert len(computed) == len(set(computed))
-    assert set(computed) <= set(stored)
 
 
 @pytest.mark.fe

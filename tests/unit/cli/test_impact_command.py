@@ -10,7 +10,6 @@ from dentscope.cli import run
 from dentscope.core.errors import EXIT_NOT_CONVERGED
 from dentscope.core.inputs.templates import KINDS, template
 from dentscope.dynamics.files.setup import read_setup
-from dentscope.models.published.hertz import HERTZ
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -53,15 +52,6 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(
     assert "2 impacts of the sweep did not end: see the column outcome" in told
     assert "changes nothing" not in told
     assert not (out / "ball-sweep.png").exists()
-
-
-def test_a_spheres_mass_follows_from_radius_and_density(tmp_path: Path) -> None:
-    file = tmp_path / "ball.toml"
-    assert run(["impact", "--new", "ball", str(file)]) == 0
-    striker = read_setup(file).scene(HERTZ).striker
-    # 4/3 pi (5 mm)^3 7800 kg/m^3, by hand
-    assert striker.mass == pytest.approx(4.0841e-3, rel=1e-4)
-    assert striker.inertia == pytest.approx(0.4 * 4.0841e-3 * 25e-6, rel=1e-4)
 
 
 def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

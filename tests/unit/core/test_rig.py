@@ -28,6 +28,9 @@ FILES = {
 }
 MISTAKES = {
     ("strikers", "rod", "length_m"): (None, "strikers.rod.length_m: missing"),
+    ("strikers", "rod", "mass_kg"): (None, "strikers.rod.mass_kg: missing"),
+    ("strikers", "rod", "shape"): ("cube", "strikers.rod.shape: 'cube'"),
+    ("strikers", "rod", "E_Pa"): (-1.0, "strikers.rod.E_Pa: -1"),
     ("strikers", "rod", "tip_flat_radius_m"): (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
     ("target", "nu"): (0.5, "target.nu: 0.5"),
     ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
