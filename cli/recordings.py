@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .shared.groups import group
-from .shared.places import folder_option
+from .shared.places import folder_option, one_of
 from .shared.terminal import console, say, show_table
+
+if TYPE_CHECKING:
+    from ..reduce.table.sheet import Sheet
 
 app = group("Recording sets, measured impacts: list, check, audit, new, add, fetch.")
 
 NewFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
 SetFolder = Annotated[
     Path, typer.Argument(metavar="SET", help="Folder of the recording set, or a shipped name.")
+]
+
+FromSheet = Annotated[
+    Path | None,
+    typer.Option("--from", metavar="SHEET", help="A laboratory's sheet: XLSX, ODS, CSV."),
+]
+OfBook = Annotated[
+    str, typer.Option("--sheet", help="Name of a workbook's sheet; default: the first.")
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(metavar="HEADER=QUANTITY UNIT", help="What a header of the sheet means."),
 ]
 
 
@@ -71,17 +87,9 @@ def new(
         bool | None,
         typer.Option("--sphere/--rod", help="The striker; of a sheet a sphere, else a rod."),
     ] = None,
-    sheet: Annotated[
-        Path | None,
-        typer.Option("--from", metavar="SHEET", help="A laboratory's sheet: XLSX, ODS, CSV."),
-    ] = None,
-    of_book: Annotated[
-        str, typer.Option("--sheet", help="Name of a workbook's sheet; default: the first.")
-    ] = "",
-    column: Annotated[
-        list[str] | None,
-        typer.Option(metavar="HEADER=QUANTITY UNIT", help="What a header of the sheet means."),
-    ] = None,
+    sheet: FromSheet = None,
+    of_book: OfBook = "",
+    column: Columns = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Only show what of the sheet would be read.")
     ] = False,
@@ -128,10 +136,7 @@ def _new_from(
         options = {"shape": shape, "column": "; ".join(columns)}
         notes += store(found.reduced(sheet), folder, Row(), kind="sheet", options=options).notes
     typer.echo(f"{sheet}: {_trials(len(found.trials))} of a {shape}")
-    for header, became in found.columns:
-        typer.echo(f"  {header!r}: {became}")
-    for line in notes:
-        typer.echo(f"  note: {line}")
+    _tell_columns(found, notes)
     if dry_run:
         head, rows = found.shown()
         show_table(console(), head, rows)
@@ -142,14 +147,59 @@ def _new_from(
 @app.command()
 def add(
     folder: NewFolder,
-    rows: Annotated[Path, typer.Argument(metavar="ROWS", help="CSV with columns of trials.csv.")],
+    rows: Annotated[
+        Path | None, typer.Argument(metavar="ROWS", help="CSV with columns of trials.csv.")
+    ] = None,
+    sheet: FromSheet = None,
+    of_book: OfBook = "",
+    column: Columns = None,
+    striker: Annotated[str, typer.Option(help="Of a sheet's trials, where a set has more.")] = "",
 ) -> None:
-    """Add trials to a set, all rows of a table or none; then diagnose it again."""
+    """Add trials to a set, all rows of a table or sheet or none; then diagnose it again."""
+    from tempfile import TemporaryDirectory
+
+    from ..core.errors import InputError
     from ..recordings.adding import add_trials
 
-    now, new = add_trials(folder, rows)
+    if (rows is None) == (sheet is None):
+        raise InputError("one table is added", source="command line", key="ROWS, --from",
+                         allowed="ROWS, or --from SHEET")  # fmt: skip
+    with TemporaryDirectory() as place:
+        if sheet is not None:
+            rows = _rows_of(sheet, folder, Path(place), column or [], of_book, striker)
+        elif column or of_book or striker:
+            raise InputError("--column, --sheet and --striker are of a sheet", key="--from",
+                             source="command line", allowed="--from SHEET beside them")  # fmt: skip
+        assert rows is not None
+        now, new = add_trials(folder, rows, source=f"{sheet}, as read" if sheet else "")
     typer.echo(f"{folder}: {_trials(len(new))} added, {_trials(len(now.trials))} in all")
     typer.echo(f"then: dentscope diagnose {quote(str(folder))}")
+
+
+def _rows_of(
+    sheet: Path, folder: Path, place: Path, columns: list[str], of_book: str, striker: str
+) -> Path:
+    """Write the rows of a laboratory's sheet as those of trials.csv, and tell what became of it."""
+    from ..recordings import read
+    from ..reduce.output.into_set import store
+    from ..reduce.output.row import Row
+    from ..reduce.table.sheet import read_sheet
+
+    strikers = sorted(read(folder).setup.strikers)
+    one_of(striker or (strikers[0] if len(strikers) == 1 else ""), strikers, key="--striker")
+    found = read_sheet(sheet, columns, sheet=of_book)
+    told = {"shape": found.shape, "column": "; ".join(columns)}
+    store(found.reduced(sheet), place, Row(striker=striker or strikers[0]), kind="sheet",
+          options=told)  # fmt: skip
+    _tell_columns(found, found.left_out)
+    return place / "trials.csv"
+
+
+def _tell_columns(found: Sheet, notes: Sequence[str]) -> None:
+    for header, became in found.columns:
+        typer.echo(f"  {header!r}: {became}")
+    for line in notes:
+        typer.echo(f"  note: {line}")
 
 
 @app.command("list")

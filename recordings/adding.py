@@ -15,7 +15,9 @@ from .recording_set import RecordingSet, files_of, read, read_as
 from .trials import read_trials
 
 
-def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]:
+def add_trials(
+    folder: Path, rows: Path, *, source: str = ""
+) -> tuple[RecordingSet, tuple[str, ...]]:
     """Add trials to a set; what is there stays as it is written. Return the set, and the new names.
 
     The rows have columns of trials.csv; those that the set has not had yet are added to it. Where
@@ -27,7 +29,7 @@ def add_trials(folder: Path, rows: Path) -> tuple[RecordingSet, tuple[str, ...]]
     # another process may add to the same set: neither's rows must be lost
     with locked(folder):
         before = read(folder)
-        problems = Problems(str(rows))
+        problems = Problems(source or str(rows))
         new = read_trials(rows, frozenset(before.setup.strikers), problems)
         table = read_text_table(rows, TRIAL_COLUMNS, Problems(str(rows)), free=VARIED)
         if new is not None and table is not None:

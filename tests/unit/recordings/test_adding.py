@@ -42,6 +42,24 @@ def test_rows_go_below_those_that_are_there(folder, capsys):
     assert all(x.startswith(y) for x, y in zip(after, before.splitlines(), strict=True))
 
 
+def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, capsys):
+    setup = (folder / "set.toml").read_text().partition("[noise]")
+    (folder / "set.toml").write_text(f"{setup[0]}[noise]\nrestitution = 0.01{setup[2]}")
+    sheet = rows(folder, "Versuch;Auftreffgeschwindigkeit [cm/s];e\nB1;120;0,71\nB2;140;0,69\n")
+    assert run(["recordings", "add", str(folder), "--from", str(sheet)]) == 0
+    assert "'Versuch': names of the trials" in capsys.readouterr().out
+    now = read(folder).trials
+    assert now.trial[-2:] == ("rows-B1", "rows-B2")
+    assert now.impact_speed_m_s[-2:] == pytest.approx([1.2, 1.4])
+    assert now.sessions[-2:].tolist() == [2.0, 2.0]
+    before = (folder / "trials.csv").read_bytes()
+    assert run(["recordings", "add", str(folder), "--from", str(sheet)]) == 2
+    assert "'rows-B1' is in the set already" in capsys.readouterr().err
+    for words in (["--from", str(sheet), "--striker", "none"], [], ["a.csv", "--sheet", "b"]):
+        assert run(["recordings", "add", str(folder), *words]) == 2
+    assert (folder / "trials.csv").read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
