@@ -49,7 +49,6 @@ def verify(
 
     bench = Bench(
         folder=folder,
-        pictures=report.parent / report.stem,
         effort=Effort.QUICK if quick else Effort.PRODUCTION,
         say=typer.echo,
     )

@@ -81,8 +81,6 @@ class Bench:
     ----------
     folder
         Where results and solves are kept.
-    pictures
-        Where pictures of the report go.
     effort
         How finely to solve.
     say
@@ -92,7 +90,6 @@ class Bench:
     """
 
     folder: Path
-    pictures: Path
     effort: Effort = Effort.PRODUCTION
     say: Callable[[str], None] = lambda line: None
     publish: Callable[[Result], None] = lambda result: None

@@ -29,8 +29,8 @@ def write_report(path: Path, *, folder: Path) -> Path:
     lines = [*_head(found), *_summary(found, absent)]
     rows = ["# What the solver was checked against: every number", ""]
     for result in found:
-        if _has_section(result):
-            lines += _section(result, path)
+        if result.missed:
+            lines += _section(result)
         rows += _rows(result)
     write_file(folder / "rows.md", "\n".join(rows).rstrip() + "\n")
     return write_file(path, "\n".join(lines).rstrip() + "\n")
@@ -57,17 +57,12 @@ def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
     yield "| check | marks met | number nearest to its mark |"
     yield "| --- | --- | --- |"
     for r in results:
-        title = f"[{r.title}](#{_anchor(r.title)})" if _has_section(r) else r.title
+        title = f"[{r.title}](#{_anchor(r.title)})" if r.missed else r.title
         yield f"| {title} | {_met(r)} | {_nearest(r)} |"
     yield ""
     if absent:
         yield f"Not measured yet: {', '.join(absent)}."
         yield ""
-
-
-def _has_section(result: Result) -> bool:
-    """Whether the page has more of a check than its row: missed marks, or pictures."""
-    return bool(result.missed or result.pictures)
 
 
 def _nearest(result: Result) -> str:
@@ -90,24 +85,18 @@ def _met(result: Result) -> str:
     return told
 
 
-def _section(result: Result, path: Path) -> Iterator[str]:
-    """The marks that a check missed, why, and its pictures."""
+def _section(result: Result) -> Iterator[str]:
+    """The marks that a check missed, and why."""
     yield f"## {result.title}"
     yield ""
-    if result.missed:
-        yield "Missed:"
-        yield ""
-        for m in result.missed:
-            yield f"- {m.what}: {_value(m)} ({m.mark})"
-        yield ""
-        why = next((check.missed for check in CHECKS if check.name == result.name), "")
-        if why:
-            yield why
-            yield ""
-    for name, caption in result.pictures:
-        yield f"![{result.title}]({path.stem}/{name})"
-        yield ""
-        yield caption
+    yield "Missed:"
+    yield ""
+    for m in result.missed:
+        yield f"- {m.what}: {_value(m)} ({m.mark})"
+    yield ""
+    why = next((check.missed for check in CHECKS if check.name == result.name), "")
+    if why:
+        yield why
         yield ""
 
 

@@ -1,4 +1,4 @@
-"""What a check returns: numbers with marks and sources, tables, pictures; as JSON and back."""
+"""What a check returns: numbers with marks and sources, tables; as JSON and back."""
 
 from __future__ import annotations
 
@@ -90,8 +90,6 @@ class Result:
         How it was done, a sentence or two.
     measurements, tables
         The numbers.
-    pictures
-        File names in docs/verification, each with a caption.
     notes
         What a reader must know to judge the numbers.
     effort
@@ -109,7 +107,6 @@ class Result:
     about: str
     measurements: tuple[Measurement, ...] = ()
     tables: tuple[Table, ...] = ()
-    pictures: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
     effort: str = ""
     numerics_version: int = 0
@@ -135,6 +132,5 @@ def read_result(path: Path) -> Result:
         Table(t["title"], tuple(t["columns"]), tuple(tuple(row) for row in t["rows"]))
         for t in raw["tables"]
     )
-    raw["pictures"] = tuple((name, caption) for name, caption in raw["pictures"])
     raw["notes"] = tuple(raw["notes"])
     return Result(**raw)

@@ -44,46 +44,29 @@ class Check:
 
 
 CHECKS: tuple[Check, ...] = (
-    Check("patch", "uniform strain in the mesh, uniform pressure across the contact", "patch.run"),
+    Check("patch", "uniform pressure across the contact", "patch.run"),
     Check("rates", "manufactured solution and elastic contact under halved elements", "rates.run"),
     Check("locking", "plastic limit loads, nearly incompressible elasticity", "locking.run"),
-    Check(
-        "objectivity",
-        "objectivity and yield surface of the stress update",
-        "metals.objectivity.run",
-    ),
-    Check(
-        "flow-laws", "exact paths of hardening, rate and heat; a balance", "metals.flow_laws.run"
-    ),
     Check("hertz", "elastic contact: F, a, pressure, stresses on the axis", "hertz.run"),
-    Check("elastic-bias", "where the bias of F as a/R goes to zero comes from", "hertz.bias"),
     Check(
         "first-yield",
         "depth and load at first yield",
-        "metals.first_yield.run",
+        "first_yield.run",
         "The load goes as the depth to the power 1.5: its mark asks for the depth within 0.67 %; "
         "integration points scatter about their element's mean by more. The means meet both marks. "
         "Tried: half the elements, extrapolated; both meshes then yield at one depth.",
     ),
     Check("friction", "full stick, Borodich and Keer; what friction adds", "friction.run"),
-    Check("truncation", "truncation of the half-space", "outer_boundaries.truncation"),
-    Check("scale", "scale invariance in R and in the unit of stress", "indifference.scale"),
-    Check("penalty", "independence of the contact stiffness", "indifference.penalty"),
+    Check("truncation", "truncation of the half-space", "truncation.run"),
+    Check("penalty", "independence of the contact stiffness", "penalty.run"),
     Check("role-swap", "exchange of the bodies where the problem is symmetric", "role_swap.run"),
-    Check("top-face", "the hemisphere's top face held radially", "outer_boundaries.top_face"),
-    Check("unloading", "unloading to zero force and reload", "unloading.run"),
-    Check(
-        "plastic-zones",
-        "pictures of figures 2.2 to 2.4 and what is said of them",
-        "metals.plastic_zones.run",
-    ),
     Check("indentation", "slip-line hardness and published indentation", "indentation.run"),
     Check("similarity", "power-law plasticity: Storåkers, Biwa and Larsson", "similarity.run"),
     Check("speed", "a hundred times the speed, exactly by similarity", "similarity.speed"),
     Check(
         "impact-strength",
         "what hardening and rate make of an impact, beside the diagnosis",
-        "metals.impact_strength.run",
+        "impact_strength.run",
     ),
     Check("flattening", "Jackson and Green, Kogut and Etsion", "flattening.run"),
     Check(

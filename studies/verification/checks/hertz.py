@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from .... import fem
-from ....campaigns.case import Case
 from ....core.material import Pair
 from ..bench import Bench
 from ..pairs import R, axis_stresses, elastic_pair, hertz_force
-from ..result import Cell, Measurement, Result, Table
+from ..result import Measurement, Result, Table
 
 _DEPTHS = (1e-6, 3e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3)
 _LOOKED_AT = 1e-5
@@ -122,59 +121,3 @@ def _axis_error(
                     None, 1.0, _JOHNSON),
         Measurement("axial stress on the axis, likewise", error[1], "%", None, 1.0, _JOHNSON),
     ), rows  # fmt: skip
-
-
-_LIGHT_FIRST, _LIGHT_LAST = 1e-6, 3e-6  # Delta/R; a/R is 0.0017 at the end
-_CHANGES: dict[str, dict[str, float]] = {
-    "as published": {},
-    "half the elements' angle": {"divisions": 32},
-    "half the ring width away from the edge": {"coarse": 0.05},
-    "both": {"divisions": 32, "coarse": 0.05},
-    "half the ring width at the edge": {"fine": 0.0125},
-    "four times the contact stiffness": {"penalty": 80.0},
-    "four times the half-space": {"flat_radius": 800.0},
-}
-
-
-def bias(bench: Bench) -> Result:
-    """Change one setting at a time and look at F over Hertz's in a very light elastic contact."""
-    pair = elastic_pair()
-    depths = fem.geometric_depths(_LIGHT_FIRST, _LIGHT_LAST, 20)
-    bias: dict[str, float] = {}
-    rows: list[tuple[Cell, ...]] = []
-    for name, changes in _CHANGES.items():
-        accuracy = fem.Accuracy.production().with_(**changes)
-        solved = bench.solve(
-            Case(f"bias-{name.replace(' ', '-')}", fem.ContactProblem(pair, depths), accuracy)
-        )
-        hertz = np.array([hertz_force(pair, d) for d in solved["delta"]])
-        bias[name] = 100.0 * float((solved["force"] / hertz - 1.0).mean())
-        rows.append((name, f"{bias[name]:+.3f} %", int(solved.counters["dofs"])))
-    plain, both = bias["as published"], bias["both"]
-    return Result(
-        name="elastic-bias",
-        title="Bias of the force in a light elastic contact",
-        about=(
-            f"Equal elastic bodies, Delta/R {_LIGHT_FIRST:g} to {_LIGHT_LAST:g}, where a/R is "
-            "below 0.002 and Hertz's solution holds; level `production` with one setting changed "
-            "at a time, mean "
-            "of F over Hertz's."
-        ),
-        measurements=(
-            Measurement("F over Hertz as published", plain, "%", -0.1, 0.1,
-                        "Johnson, Contact Mechanics, Eq. 4.23"),
-            Measurement("the same, extrapolated in the square of the element size",
-                        plain - 4.0 / 3.0 * (plain - both), "%", -0.1, 0.1, "same"),
-        ),
-        tables=(
-            Table("One change at a time", ("change", "F over Hertz", "unknowns"), tuple(rows)),
-        ),
-        notes=(
-            "What is left is the stiffness of the bulk's elements, by their angle and by the rings "
-            "away from the contact edge, and a third of it is the finite sphere, which adds 0.24 % "
-            "of F at a/R = 0.01. Up to numerics version 4 the bias was 0.33 %: since then the "
-            "gradients vary half as much within an element, which takes most of the angle's part, "
-            "and the rings' width grows as the cube root of the distance, which takes most of "
-            "theirs.",
-        ),
-    )  # fmt: skip

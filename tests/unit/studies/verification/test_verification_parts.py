@@ -40,7 +40,7 @@ def result(name="patch", value=0.1):
         name=name, title="A title", about="How.",
         measurements=(Measurement("x", value, "%", None, 0.3, "a paper"),),
         tables=(Table("T", ("a", "b"), (("1", 2.0), ("3", 4))),),
-        pictures=(("p.png", "a picture"),), notes=("A note.",),
+        notes=("A note.",),
     )  # fmt: skip
 
 
@@ -60,8 +60,8 @@ def check_of(name, measure):
 def test_a_check_is_measured_once_at_each_effort(tmp_path):
     calls = []
     check = check_of("patch", lambda bench: calls.append(bench.effort) or result())
-    quick = Bench(tmp_path, tmp_path, Effort.QUICK)
-    full = Bench(tmp_path, tmp_path, Effort.PRODUCTION)
+    quick = Bench(tmp_path, Effort.QUICK)
+    full = Bench(tmp_path, Effort.PRODUCTION)
     run_checks([check], bench=quick)
     run_checks([check], bench=quick)
     assert calls == [Effort.QUICK]
@@ -83,7 +83,7 @@ def test_results_of_other_numerics_do_not_count(tmp_path):
 
 def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
     check = check_of("patch", lambda bench: result(value=0.7))
-    run_checks([check], bench=Bench(tmp_path, tmp_path, Effort.QUICK))
+    run_checks([check], bench=Bench(tmp_path, Effort.QUICK))
     text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
     assert "- x: 0.7 % (at most 0.3)" in text.split("## A title\n\nMissed:")[1]
     assert "| [A title](#a-title) | 0 of 1, quick |  |" in text
@@ -91,17 +91,16 @@ def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
     assert "| x | 0.7 % | at most 0.3 | **missed** | a paper |" in rows
     assert "| 1 | 2 |" in rows
     assert "| 1 | 2 |" not in text
-    assert "![A title](verification/p.png)\n\na picture" in text
     assert "hertz" in text.split("Not measured yet: ")[1].splitlines()[0]
 
 
 def test_a_report_is_renewed_check_by_check(tmp_path):
     check = check_of("patch", lambda bench: result(value=0.7))
     report = tmp_path / "docs" / "verification.md"
-    run_checks([check], bench=Bench(tmp_path / "a", tmp_path, Effort.QUICK))
+    run_checks([check], bench=Bench(tmp_path / "a", Effort.QUICK))
     write_report(report, folder=tmp_path / "a")
     hertz = check_of("hertz", lambda bench: result("hertz", 0.1))
-    run_checks([hertz], bench=Bench(tmp_path / "b", tmp_path, Effort.QUICK))
+    run_checks([hertz], bench=Bench(tmp_path / "b", Effort.QUICK))
     text = write_report(report, folder=tmp_path / "b").read_text()
     assert "x: 0.7 % (" in text  # measured elsewhere, kept beside the report
     assert "| 1 of 1, quick | x: 0.1 % (" in text
@@ -121,7 +120,7 @@ def test_how_much_of_a_mark_is_used(value, low, high, used):
 def test_the_page_shows_the_number_nearest_to_its_mark(tmp_path):
     many = tuple(Measurement(f"m{k}", 0.1 * k, high=1.0) for k in range(1, 7))
     check = check_of("patch", lambda bench: replace(result(), measurements=many))
-    run_checks([check], bench=Bench(tmp_path, tmp_path, Effort.QUICK))
+    run_checks([check], bench=Bench(tmp_path, Effort.QUICK))
     text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
     assert re.findall(r"\| (m\d):", text) == ["m6"]
 

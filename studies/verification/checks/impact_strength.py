@@ -16,23 +16,23 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..... import fem
-from .....campaigns.case import Case
-from .....core.arrays import Array
-from .....core.flow import Flow, Rate, swift, voce
-from .....core.material import Material, Pair
-from .....dynamics import Approach, Scene, Striker, scene_of, strike
-from .....dynamics.mechanisms import MECHANISMS, Surroundings
-from .....dynamics.mechanisms.base import attached
-from .....models import LAWS
-from ....concealed import Metal as ProofMetal
-from ....concealed import Striker as ProofStriker
-from ....proof.generators.effects import Effect
-from ....proof.generators.parameters import CAVITY, FOUNDATION
-from ....proof.generators.rig import COLUMNS, NUISANCES, Rig
-from ....proof.generators.simulate import results_of, rows_of
-from ...bench import Bench
-from ...result import Cell, Measurement, Result, Table
+from .... import fem
+from ....campaigns.case import Case
+from ....core.arrays import Array
+from ....core.flow import Flow, Rate, swift, voce
+from ....core.material import Material, Pair
+from ....dynamics import Approach, Scene, Striker, scene_of, strike
+from ....dynamics.mechanisms import MECHANISMS, Surroundings
+from ....dynamics.mechanisms.base import attached
+from ....models import LAWS
+from ...concealed import Metal as ProofMetal
+from ...concealed import Striker as ProofStriker
+from ...proof.generators.effects import Effect
+from ...proof.generators.parameters import CAVITY, FOUNDATION
+from ...proof.generators.rig import COLUMNS, NUISANCES, Rig
+from ...proof.generators.simulate import results_of, rows_of
+from ..bench import Bench
+from ..result import Cell, Measurement, Result, Table
 
 _BALL = Material(210e9, 0.3, 1e11, density=7800.0)
 _FLAT = Material(70e9, 0.33, 300e6, density=2700.0)

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from ..... import fem
-from .....core.material import Material, Pair
-from ...bench import Bench
-from ...pairs import RIGID, R, exact_yield_constant, hertz_force
-from ...result import Cell, Measurement, Result, Table
+from .... import fem
+from ....core.material import Material, Pair
+from ..bench import Bench
+from ..pairs import RIGID, R, exact_yield_constant, hertz_force
+from ..result import Cell, Measurement, Result, Table
 
 _E = 200e9
 _DEPTHS = np.arange(0.94, 1.03, 0.0025)  # over the critical one
