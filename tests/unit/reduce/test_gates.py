@@ -13,46 +13,23 @@ from dentscope.reduce.bounces.track import Track
 from dentscope.reduce.gates import Refused, is_restitution
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.measured import Measured
-from dentscope.reduce.table.pulse import find_pulse
 from dentscope.studies.synthetic.tracks import TrackTruth, seen
-from made_records import T, half_sine, recorded, run
+from made_records import T, half_sine, recorded, run, table
 
 _TRACK = seen(TrackTruth(rate=500.0, noise=0.1, restitution=0.8))
 BOUNCES = Track(_TRACK.time, _TRACK.height), UNKNOWN
-WIDE = half_sine(long=8e-3, noise=0.0)
 
 
 def noise(std=1.0, seed=3):
     return np.random.default_rng(seed).normal(0.0, std, T.size)
 
 
-@pytest.mark.parametrize(
-    ("look", "record"),
-    [
-        ("flat over", np.minimum(WIDE, 500.0) + noise()),
-        ("flat over", np.minimum(WIDE, 500.0 + 4.0 * noise(seed=5)) + noise()),
-        ("an edge: one", 800.0 * np.exp(-np.clip(T - 0.02, 0.0, 1.0) / 4e-3)
-         * np.clip((T - 0.0197) / 3e-4, 0.0, 1.0) + noise()),
-        ("like pulses", sum(half_sine(at=a, long=2e-3, peak=p, noise=0.0) for a, p in
-                      ((0.004, 700.0), (0.012, 780.0), (0.02, 800.0), (0.028, 760.0),
-                       (0.036, 750.0))) + noise()),
-        ("times the noise", noise()),
-        ("a step", np.where(T > 0.02, 800.0, 0.0) + noise()),
-    ],
-    ids=["clipped", "soft-clipped", "decay", "steps", "noise", "step"],
-)  # fmt: skip
-def test_what_is_no_whole_impact(look, record):
-    with pytest.raises(Refused, match=look):
-        find_pulse(T, record, source="record")
-
-
 def test_missing_rows_within_a_pulse_are_a_hole(tmp_path):
     value = half_sine()
     kept = (value < 700.0) | (T < 0.021)
-    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T[kept], value[kept], strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
+    times = [f"{t:.4f}" for t in T[kept]]
     with pytest.raises(Refused, match="no sample for"):
-        run(tmp_path / "a.csv")
+        run(table(tmp_path / "a.csv", value[kept], times=times))
 
 
 def test_a_refusal_draws_the_record(tmp_path, capsys):

@@ -242,20 +242,6 @@ def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, cap
     assert kept == [own, first]
 
 
-def test_several_files_in_one_call(tmp_path, capsys):
-    for name in ("a", "b"):
-        (tmp_path / f"{name}.csv").write_text(f"drop_m,{name}\n0.5,0.3\n")
-    (tmp_path / "bad.csv").write_text("nothing\n")
-    files = [str(tmp_path / f"{name}.csv") for name in ("a", "b", "bad")]
-    given = ["--holds", "rebounds", "--value", "1", "--into", str(tmp_path / "set")]
-    assert run(["reduce", "table", *files, *given]) == 2
-    said = capsys.readouterr()
-    assert "2 of 3 files reduced" in said.out
-    assert "bad.csv" in said.err
-    assert read(tmp_path / "set", unfinished=True).trials.trial == ("a-drop1-1", "b-drop1-1")
-    assert run(["reduce", "table", *files, *given, "--trial", "x"]) == 2
-
-
 def test_many_mistakes_of_the_set_that_a_reduction_would_write_are_many_lines(tmp_path):
     """A set whose own files are wrong, each mistake by a line of its own that names the folder."""
     text = 'format = "recording-set/1"\nname = "a"\n[target]\nE_Pa = 2\nnu = 0.7\n'
@@ -264,4 +250,3 @@ def test_many_mistakes_of_the_set_that_a_reduction_would_write_are_many_lines(tm
     lines = str(caught.value).splitlines()
     assert len(lines) >= 2
     assert all(line.startswith(str(tmp_path / "set")) for line in lines)
-    assert "\\n" not in str(caught.value)

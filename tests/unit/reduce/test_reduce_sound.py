@@ -146,18 +146,6 @@ def test_sound_into_a_set(tmp_path, capsys):
 
 
 @measured
-def test_stop_watch_times_of_a_golf_ball():
-    # conforming golf balls return with at most 0.83 from a hard plate at 43 m/s (USGA protocol
-    # limit); at a few m/s from stone more, and e falls little over the run
-    given = {"holds": "bounces", "sheet": "110 cm", "time": "4", "mass_kg": 0.0459,
-             "diameter_m": 0.0427, "contact_time_s": 5e-4}  # fmt: skip
-    reduced = load_kind("table").run(REAL / "golf_ball/data_golfball.xlsx", given, source="test")
-    e = [t.observables["restitution"].value for t in reduced.trials]
-    assert len(e) == 6
-    assert np.mean(e) == pytest.approx(0.89, abs=0.02)
-
-
-@measured
 def test_restitution_of_a_golf_ball_is_one_value_with_drag_taken_out():
     """Four heights of release: what is left of a course with speed is below 0.003."""
     given = {"holds": "bounces", "time": "4", "mass_kg": 0.0459, "diameter_m": 0.0427,
@@ -243,13 +231,8 @@ def test_four_bounces_are_as_uncertain_as_their_restitution_is_uneven():
 TAPS = (0.80, 0.72, 0.73, 0.60, 0.58, 0.45, 0.44, 0.36, 0.35, 0.26, 0.25, 0.18)
 
 
-@pytest.mark.parametrize(
-    ("intervals", "refused"),
-    [(TAPS, True), (TAPS[::-1], True), ((0.5,) * 6, True),
-     ((0.4, 0.31, 0.33, 0.22, 0.24, 0.16, 0.17), True)],
-)  # fmt: skip
-def test_taps_are_no_bouncing_ball(tmp_path, intervals, refused):
-    """Refused, or with errors that hold the scatter of the run: never a gain of speed."""
+@pytest.mark.parametrize("intervals", [TAPS, TAPS[::-1], (0.5,) * 6])
+def test_taps_are_no_bouncing_ball(tmp_path, intervals):
     taps = np.cumsum((0.3, *intervals))
     rate, rng = RATE, np.random.default_rng(1)
     t = np.arange(0.0, taps[-1] + 0.5, 1.0 / rate)
@@ -258,15 +241,8 @@ def test_taps_are_no_bouncing_ball(tmp_path, intervals, refused):
         late = t - at
         sound += 0.5 * np.exp(-np.maximum(late, 0.0) / 5e-3) * np.sin(2e4 * late) * (late > 0.0)
     write_wav(sound, tmp_path / "taps.wav")
-    kind = load_kind("sound")
-    if refused:
-        with pytest.raises(InputError, match=r"no run of bounces|of the speed back|do not shrink"):
-            kind.run(tmp_path / "taps.wav", {}, source="test")
-        return
-    found = kind.run(tmp_path / "taps.wav", {}, source="test")
-    ratios = [v for k, v in found.values.items() if k.endswith("restitution")]
-    assert all(v.value < 1.0 + 3.0 * v.std for v in ratios)
-    assert all(v.std > 0.02 for v in ratios)
+    with pytest.raises(InputError, match=r"no run of bounces|of the speed back|do not shrink"):
+        load_kind("sound").run(tmp_path / "taps.wav", {}, source="test")
 
 
 def test_a_run_whose_every_bounce_misses_a_flight_is_refused(tmp_path):

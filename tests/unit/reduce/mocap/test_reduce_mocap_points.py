@@ -58,8 +58,6 @@ def test_a_point_without_a_bounce_is_a_line(tmp_path):
     _flight(tmp_path / "a.csv")
     with pytest.raises(InputError, match="no bounce with a flight"):
         reduce(tmp_path / "a.csv", Options(shape="sphere", tip_radius_m=0.02, up="-y"))
-    with pytest.raises(ValueError, match="three numbers"):
-        Options(shape="sphere", tip_radius_m=0.02, spin_before_rad_s="1,2")
 
 
 @pytest.mark.skipif(not RAW.exists(), reason="the raw recordings are not beside the checkout")

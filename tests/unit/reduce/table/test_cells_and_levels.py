@@ -5,36 +5,13 @@ import pytest
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.cells import (
-    commas_between,
     instant,
-    plain,
     since_first,
-    value_of,
 )
 from dentscope.reduce.table.file import columns_of
-from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
-from dentscope.reduce.table.pulse.level import level_before
+from dentscope.reduce.table.heading import heading_of, labview_rows
 from made_records import RATE, T, half_sine, run, table
 from scipy.signal import lsim
-
-
-@pytest.mark.parametrize(
-    ("cell", "separator", "number"),
-    [("1 234,5", ";", 1234.5), ("1.234,5", ";", 1234.5), ("1'234.5", ",", 1234.5),
-     ("1,234.5", ",", 1234.5), ("0,25", ";", 0.25), ("-12", ",", -12.0)],
-)  # fmt: skip
-def test_numbers_of_several_languages(cell, separator, number):
-    assert value_of(plain(cell, separator)) == number
-
-
-def test_quoted_commas_that_may_part_thousands_are_not_guessed():
-    for cells, between in ((["1,234", "0,25"], ";"), (["1,234", "12,345,678", "7.5"], ",")):
-        assert commas_between(cells, ",") == between
-
-
-@pytest.mark.parametrize("cell", ["OL", "∞", "******", "#N/A", "NaN", "9.9E37", "-9.91e37", ""])
-def test_marks_are_no_numbers(cell):
-    assert np.isnan(value_of(cell))
 
 
 @pytest.mark.parametrize("mark", ["OL", "", "∞", "-∞", "******", "#N/A", "NaN", "9.9E37", "+OVER"])
@@ -217,37 +194,11 @@ def test_what_is_no_time_and_what_stands_behind_is_told(tmp_path):
         path = named
 
 
-def test_quoted_decimal_commas_and_units_in_words(tmp_path):
-    rows = [f'"{t:.4f}";"{v:.3f}"'.replace(".", ",") for t, v in zip(T, half_sine(), strict=True)]
-    path = tmp_path / "a.csv"
-    path.write_text("\n".join(["Time;Force", "(sec);(N)", *rows]))
-    assert run(path).values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
-    assert in_short("(Seconds)") == "s"
-
-
 def test_a_heading_names_units_and_says_more():
     above = [["Area", "38.1553", "mm^2"], ["Time", "Load"], ["(s)", "(kN)"]]
     found = heading_of(above, 2)
     assert found.names == ("Time [s]", "Load [kN]")
     assert found.quantity("area") == (38.1553, "mm^2")
-
-
-def test_the_zero_is_the_level_just_before(tmp_path):
-    """A body stands on the plate, flies, and lands: not the level that the record began with."""
-    value = half_sine(1500.0, 8e-3, 0.03) + np.where(T < 0.012, 450.0, 0.0)
-    found = run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in value])).values
-    assert found["peak_force_N"].value == pytest.approx(1500.0, abs=3.0)
-    assert found["impulse_N_s"].value == pytest.approx(2 / np.pi * 1500 * 8e-3, abs=0.02)
-    level = level_before(value, int(np.argmax(value)))
-    assert abs(level.mean) < 3.0 * level.std + 0.2
-    assert T[level.first] > 0.0119
-
-
-def test_an_edge_is_no_pulse(tmp_path):
-    s = np.clip((T - 0.02) / 0.01, 0.0, 1.0)
-    value = np.where((s > 0.0) & (s < 1.0), 700.0 + 100.0 * s, 0.0) + half_sine(0.0)
-    with pytest.raises(InputError, match="an edge: one side has no flank"):
-        run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in value]))
 
 
 def test_a_pulse_without_an_end_is_refused(tmp_path):
@@ -310,55 +261,6 @@ def test_tension_from_a_load_and_an_area(tmp_path):
         assert found["Sy_Pa"].value == pytest.approx(480e6, rel=0.04)
     with pytest.raises(InputError, match=r"area_mm2: .*holds a load, and the file names no area"):
         kind.run(bare, given, source="test")
-
-
-def soft_ball(path, *, last, rate, e=0.82, fall=0.98, g=9.81, bounces=4):
-    """Heights of a ball on a spring: half a sine of `last` seconds at every contact."""
-    speed, at, pieces = np.sqrt(2.0 * g * fall), np.sqrt(2.0 * fall / g), []
-    t = np.arange(0.0, 3.2, 1.0 / rate)
-    pieces.append((-np.inf, at, lambda s: fall - 0.5 * g * s**2))
-    for _ in range(bounces):
-        up, turn = e * speed, last / np.pi
-        sink = np.sqrt(speed * up) * turn
-        pieces.append((at, at + last, lambda s, a=at, d=sink, w=turn: -d * np.sin((s - a) / w)))
-        at += last
-        pieces.append(
-            (at, at + 2 * up / g, lambda s, a=at, v=up: v * (s - a) - 0.5 * g * (s - a) ** 2)
-        )
-        at, speed = at + 2.0 * up / g, up
-    h = np.zeros_like(t)
-    for low, high, path_of in pieces:
-        part = (t >= low) & (t < high)
-        h[part] = path_of(t[part])
-    keep = t < at
-    rng = np.random.default_rng(7)
-    lines = [f"{a:.6f},{b:.6f}" for a, b in zip(t, h + rng.normal(0.0, 3e-4, t.size), strict=True)]
-    path.write_text(
-        "\n".join(["time_s,height_m", *(x for x, k in zip(lines, keep, strict=True) if k)])
-    )
-    return path
-
-
-@pytest.mark.parametrize(
-    ("last", "rate", "e"), [(0.004, 360.0, 0.7), (0.009, 200.0, 0.85), (0.018, 500.0, 0.6)]
-)
-def test_soft_contacts_are_within_the_error(tmp_path, last, rate, e):
-    path = soft_ball(tmp_path / "a.csv", last=last, rate=rate, e=e)
-    found = load_kind("table").run(path, {"holds": "height"}, source="test").values
-    ratio, speed = (found[f"bounce1_{n}"] for n in ("restitution", "impact_speed_m_s"))
-    assert abs(ratio.value - e) < 3.0 * ratio.std
-    assert abs(speed.value - np.sqrt(2.0 * 9.81 * 0.98)) < 3.0 * speed.std
-
-
-def test_a_stated_contact_time_acts_on_heights(tmp_path):
-    path = soft_ball(tmp_path / "a.csv", last=0.012, rate=240.0)
-    kind = load_kind("table")
-    alone = kind.run(path, {"holds": "height"}, source="test").values
-    told = kind.run(path, {"holds": "height", "contact_time_s": 0.012}, source="test").values
-    speed = told["bounce1_impact_speed_m_s"]
-    assert abs(speed.value - np.sqrt(2.0 * 9.81 * 0.98)) < 3.0 * speed.std < 0.05
-    assert speed.std < alone["bounce1_impact_speed_m_s"].std
-    assert abs(told["bounce1_restitution"].value - 0.82) < 3.0 * told["bounce1_restitution"].std
 
 
 @pytest.mark.parametrize(

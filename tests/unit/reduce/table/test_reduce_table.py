@@ -175,12 +175,6 @@ def test_a_ringing_slower_than_the_pulse_stays_unknown(swings_in, part):
     assert abs(found.peak.value - 100.0) < found.peak.std < 40.0
 
 
-def test_no_pulse_in_noise():
-    rng = np.random.default_rng(1)
-    with pytest.raises(InputError, match="noise"):
-        find_pulse(np.arange(500.0), rng.normal(size=500), source="test")
-
-
 def test_rebounds_find_their_drops_and_the_unit_of_each_column(tmp_path):
     text = "Nr;Fallhöhe (m);h1 (cm);h2 (mm);e (%)\n1;1,00;64,0;640;80\n2;0,50;32,0;320;80\n"
     (tmp_path / "a.csv").write_text(text, "utf-8")
