@@ -24,23 +24,25 @@ comm = pytest.importorskip("distributed.comm")
 
 ROOT = Path(__file__).resolve().parents[3]
 
-SCRIPT = """
+HEAD = """
 import os, signal, sys
+from dataclasses import replace
 from pathlib import Path
-from distributed import LocalCluster
 from dentscope import fem
 from dentscope.campaigns import Design, run_design, standard_case
 from dentscope.campaigns.executor import DaskExecutor
-from dentscope.core import Material, Pair
+from dentscope.core import InputError, Material, Pair
 
-def made():
+def made(n):
     flat = Material(E=200e9, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(3)]
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
     smoke = fem.Accuracy.smoke()
     return tuple(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke)
                  for i, p in enumerate(pairs))
-
+"""
+SCRIPT = f"""{HEAD}
 def main():
+    from distributed import LocalCluster
     killed = []
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
                       silence_logs=50) as cluster:
@@ -49,8 +51,8 @@ def main():
             if not killed:
                 killed.append(next(iter(executor.client.run(os.getpid).values())))
                 os.kill(killed[0], signal.SIGKILL)
-        status = run_design(Design("dask", "", made), Path(sys.argv[1]), executor=executor,
-                            time_limit_s=600.0, report=kill_one)
+        status = run_design(Design("dask", "", lambda: made(3)), Path(sys.argv[1]),
+                            executor=executor, time_limit_s=600.0, report=kill_one)
         print("KILLED", len(killed), "DONE", status.done, status.failed, status.missing, flush=True)
         os._exit(0)
 
@@ -75,53 +77,25 @@ def test_all_cases_arrive_though_a_worker_is_killed(tmp_path):
     assert len(read_curves(path)) == 3
 
 
-LOST = """
-import os, signal, subprocess, sys, time
-from dataclasses import replace
-from pathlib import Path
-from dentscope import fem
-from dentscope.campaigns import Design, run_design, standard_case
-from dentscope.campaigns.executor import DaskExecutor
-from dentscope.core import InputError, Material, Pair
-
+LOST = f"""{HEAD}
 def stand_in(specification, limit):
     import time
     time.sleep(0.2)
     raise RuntimeError("stand-in")
 
-def made():
-    flat = Material(E=200e9, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(40)]
-    smoke = fem.Accuracy.smoke()
-    return tuple(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke)
-                 for i, p in enumerate(pairs))
-
-def started(name, *options):
-    command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *options, "--no-dashboard"]
-    return subprocess.Popen(command, stderr=subprocess.DEVNULL)
-
 if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    file = folder / "scheduler.json"
-    scheduler = started("scheduler", "--port", "0", "--scheduler-file", str(file))
-    worker = started("worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny",
-                     "--death-timeout", "5")
-    while not file.exists():
-        time.sleep(0.05)
-    import json
-    address = json.loads(file.read_text())["address"]
+    address, scheduler, folder = sys.argv[1:]
     executor = replace(DaskExecutor.connect(address, timeout_s=60.0), work=stand_in)
     steps = []
     def report(step):
         steps.append(step)
         if len(steps) == 3:
-            scheduler.kill()
+            os.kill(int(scheduler), signal.SIGKILL)
     try:
-        run_design(Design("lost", "", made), folder / "run", executor=executor,
+        run_design(Design("lost", "", lambda: made(40)), Path(folder), executor=executor,
                    time_limit_s=10.0, report=report)
     except InputError as error:
         print("TOLD", error, flush=True)
-    worker.kill()
     print("STORED", len(steps), flush=True)
     os._exit(0)
 """
@@ -132,10 +106,13 @@ def test_a_scheduler_that_goes_away_fails_no_case(tmp_path):
     # dask's client looks for its scheduler for half a minute before it gives up
     script = tmp_path / "lost.py"
     script.write_text(LOST)
-    answer = subprocess.run(
-        [sys.executable, str(script), str(tmp_path)],
-        capture_output=True, text=True, timeout=240, check=False,
-    )  # fmt: skip
+    with Cluster(tmp_path) as cluster:
+        cluster.worker()
+        answer = subprocess.run(
+            [sys.executable, str(script), cluster.address, str(cluster.processes[0].pid),
+             str(tmp_path / "run")],
+            capture_output=True, text=True, timeout=240, check=False,
+        )  # fmt: skip
     assert "TOLD" in answer.stdout, answer.stderr
     assert "the dask scheduler went away; all completed cases are kept" in answer.stdout
     told = int(answer.stdout.split("STORED")[1])
