@@ -152,10 +152,8 @@ def _publish(content: dict[str, Any], out: Path) -> None:
     write_coefficients(content, COEFFICIENTS_FILE)
     update_page(_PAGE, published_section(content))
     folder = _PAGE.parent / "pictures"
-    for ours, theirs in (
-        ("errors", "fitted-errors"), ("maps", "fitted-maps"), ("compact-maps", "compact-maps"),
-    ):  # fmt: skip
-        write_file(folder / f"{theirs}.png", (out / f"{ours}.png").read_bytes())
+    for name in ("errors", "maps"):
+        write_file(folder / f"fitted-{name}.png", (out / f"{name}.png").read_bytes())
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:

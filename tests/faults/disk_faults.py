@@ -407,7 +407,7 @@ def publish_fit_writer(folder):
     new["domain"]["combinations"] += 1
     page = fit_command._PAGE.read_text()
     out = folder / "out"
-    for name in ("errors", "maps", "compact-maps"):
+    for name in ("errors", "maps"):
         write_file(out / f"{name}.png", b"new picture")
 
     def begin(place):
