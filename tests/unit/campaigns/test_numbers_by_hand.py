@@ -58,11 +58,3 @@ def test_a_case_under_way_still_takes_a_seventh_of_its_time_however_long_it_has(
     whole = forecast.cost_s(one)
     assert forecast.left_s(0.5 * whole) == pytest.approx(0.5 * whole)
     assert forecast.left_s(9.0 * whole) == pytest.approx(0.15 * whole)
-
-
-def test_what_was_measured_before_counts_as_a_fifth_of_one() -> None:
-    """One case that took e times as long: 1/(1 + 0.2) of it is believed of the next, alike."""
-    one, other = cases(2)
-    before = Forecast([other], workers=1).cost_s(other)
-    after = Forecast([other], workers=1, ended=[(one, np.e * before)]).cost_s(other)
-    assert np.log(after / before) == pytest.approx(1.0 / 1.2, abs=0.03)

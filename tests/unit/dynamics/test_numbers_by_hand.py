@@ -21,10 +21,8 @@ from dentscope.dynamics.mechanisms.rod_vibration import axial_modes
 from dentscope.dynamics.mechanisms.roughness import Layer
 from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import RateProfile
 from dentscope.dynamics.strength import strength_table
-from dentscope.dynamics.surface import N_SURFACE, Imprint, Spot, beside, leave
-from dentscope.dynamics.tabulated.cells import cells_of
+from dentscope.dynamics.surface import Imprint, Spot, beside
 from dentscope.dynamics.told.band import _shifted, _sizes, band_of, last_blow
-from dentscope.dynamics.told.checks import _bodies, _either, reason_above_one
 from dentscope.models import LAWS
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)
@@ -91,34 +89,6 @@ def test_of_a_deviation_that_leaves_the_range_a_part_is_taken(std, share):
     assert [one[1] for one in _shifted(given, LAWS["hertz"])] == [share]
 
 
-@pytest.mark.parametrize(("mass", "told"), [(1.009, False), (1.011, True)])
-def test_a_mass_that_is_a_hundredth_off_a_solid_spheres_is_told(mass, told):
-    solid = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9
-    said = list(_bodies(setup(ball={"mass_kg": mass * solid}), LAWS["hertz"]))
-    assert any("a solid sphere" in line for line in said) is told
-
-
-@pytest.mark.parametrize(("moved", "told"), [(0.24, False), (0.26, True)])
-def test_that_specimens_decide_who_takes_the_dent_is_told_from_a_quarter_on(moved, told):
-    """A law whose sphere takes more of the dent the weaker it is than its own stated strength."""
-
-    def residual(pair, depth):
-        part = 0.5 + (moved if pair.sphere.Sy < HARD.Sy else 0.0)
-        return np.asarray(part), np.asarray(1.0 - part)
-
-    law = SimpleNamespace(residual=residual)
-    given = SimpleNamespace(pair=scene().pair, law=law)
-    assert bool(list(_either(given, SimpleNamespace(peak_depth_m=1e-5)))) is told
-
-
-@pytest.mark.parametrize(("e", "told"), [(1.0004, False), (1.0006, True)])
-def test_a_restitution_above_one_is_told_beyond_rounding(e, told):
-    found = SimpleNamespace(
-        restitution=e, kinetic_before_J=1.0, kinetic_after_J=1.0, gravity_work_J=0.0
-    )
-    assert bool(reason_above_one(scene(), found)) is told
-
-
 def test_slopes_are_differences_over_a_ten_thousandth_of_the_depth():
     assert loading_window(1.0, 0.0, 2.0) == pytest.approx((1.0 - 1e-4, 1.0 + 1e-4), abs=1e-12)
 
@@ -133,32 +103,10 @@ def imprint(at):
     return Imprint(at, at, at - 1e-4, at + 1e-4, at, 1e-6, 1e-5, 1e-4, 0.5)
 
 
-def test_twenty_three_imprints_are_kept_apart_for_a_touch_to_come():
-    """A touch that ends leaves room for the next: of 24 the two nearest become one."""
-
-    def after(count):
-        spot = Spot(imprints=tuple(imprint(1e-2 * k) for k in range(count)))
-        row = np.append(spot.row(), np.zeros(1000))
-        leave(row, 0.0)
-        return len(Spot.of(row).imprints)
-
-    assert N_SURFACE == len(Spot().row())
-    assert [after(22), after(23), after(24)] == [22, 23, 23]
-
-
 def test_the_wall_of_a_crater_is_three_tenths_of_its_radius_wide_at_the_least():
     steep = replace(imprint(0.0), first=-1e-5, last=1e-5)
     row = Spot(imprints=(steep,)).row()
     assert beside(row, 5, 2e-5) == pytest.approx((2e-5, 0.3e-4, 1.0))
-
-
-def test_a_table_that_never_settles_ends_after_some_thousand_cells():
-    rng = np.random.default_rng(1)
-    found = cells_of(lambda x: rng.normal(size=(len(x), 1)), 0.0, 1.0, tolerance=1e-9, least=1e-300)
-    assert not found.outcome.completed
-    tried = int(found.outcome.message.split(" cells")[0].split()[-1])
-    # a batch is tried to its end
-    assert 4000 <= tried <= 5000
 
 
 @pytest.mark.parametrize(("off", "own"), [(5e-4, True), (2e-3, False)])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,7 +10,6 @@ from dentscope import fem
 from dentscope.core import InputError, Material, Pair
 from dentscope.fem.discretise import _softened, discretise
 from dentscope.fem.loading import Loading, _growth, _stops
-from dentscope.fem.material.flow import NO_RATE, Law, softening
 from dentscope.fem.mesh import Zone
 from dentscope.fem.path import extrapolate
 from dentscope.fem.results.ripple import _weights
@@ -76,13 +74,6 @@ def test_a_solve_goes_to_half_a_radius() -> None:
     fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.49))
     with pytest.raises(InputError, match="depths"):
         fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.51))
-
-
-def test_heat_leaves_a_hundredth_of_the_strength() -> None:
-    """A law that takes a share w of the strength at a work of w."""
-    law = Law(NO_RATE, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, math.inf)
-    assert softening(law, 0.985)[0] == pytest.approx(0.015)
-    assert softening(law, 0.995)[0] == 0.01
 
 
 def test_a_ripple_is_looked_for_a_third_of_a_logarithm_to_both_sides_in_eleven_steps() -> None:

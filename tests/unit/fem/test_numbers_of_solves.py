@@ -9,8 +9,7 @@ import pytest
 import scipy.sparse as sparse
 from dentscope import fem
 from dentscope.core import Material, Pair
-from dentscope.core.errors import Ending
-from dentscope.fem import loading, unloading
+from dentscope.fem import loading
 from dentscope.fem.assemble import DISTORTED, bulk_forces
 from dentscope.fem.discretise import discretise
 from dentscope.fem.elements import State
@@ -23,7 +22,6 @@ from dentscope.fem.mesh.rings import ladder_rings
 from dentscope.fem.newton import Solver
 from dentscope.fem.results import measure
 from dentscope.fem.results.measure import edge_of_contact
-from dentscope.fem.unloading import _back
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
 
@@ -58,17 +56,6 @@ def test_forces_balance_to_a_ten_thousandth_or_nothing_moves(
     solver = SimpleNamespace(_unbalanced=lambda _: residual, grid=SimpleNamespace(round_off=0.0))
     now = SimpleNamespace(contact=SimpleNamespace(force=1.0))
     assert Solver._converged(solver, now, next_move, 1.0) == converged
-
-
-@pytest.mark.parametrize(("residual", "evaluations"), [(None, 1 + 5), ([1.0], 1 + 3)])
-def test_a_correction_is_halved_five_times_and_has_three_secants(residual, evaluations) -> None:
-    """No state at all; or the work of the residual of -1 that becomes 1 and stays there."""
-    count = []
-    found = None if residual is None else SimpleNamespace(residual=np.array(residual))
-    solver = SimpleNamespace(_evaluate=lambda *_: count.append(1) or found)
-    now = SimpleNamespace(residual=np.array([-1.0]))
-    Solver._search(solver, np.zeros(1), now, np.ones(1), None)
-    assert len(count) == evaluations
 
 
 def system(diagonal, factors=None) -> SimpleNamespace:
@@ -211,25 +198,6 @@ def test_the_first_contact_starts_at_three_hundredths_of_its_stiffness() -> None
     given = SimpleNamespace(_stops=[1e-4], _solver=lambda: solver)
     assert Loading._first_contact(given) is None
     assert seen == [0.03, 1.0]
-
-
-def test_an_unloading_has_sixty_steps(monkeypatch) -> None:
-    """Each takes a hundredth of the force off."""
-
-    def point(delta, force):
-        reading = SimpleNamespace(force=force, radius=0.1)
-        return SimpleNamespace(
-            delta=delta, record=SimpleNamespace(reading=reading), balanced=lambda *_: "found",
-            equilibrium=SimpleNamespace(u=np.zeros(1)),
-        )  # fmt: skip
-
-    monkeypatch.setattr(
-        unloading, "accept",
-        lambda here, found, delta: point(delta, 0.99 * here.record.reading.force),
-    )  # fmt: skip
-    _, outcome, steps = _back(point(0.01, 1.0), [])
-    assert steps == 61
-    assert outcome.ending is Ending.NOT_CONVERGED
 
 
 def test_a_gap_is_fitted_over_five_elements_at_161_edges(monkeypatch) -> None:

@@ -11,7 +11,6 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy import verdict
-from dentscope.discrepancy.baseline.laws import _apart
 from dentscope.discrepancy.baseline.solve import _level
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
@@ -230,18 +229,6 @@ def test_curves_at_several_rates_narrow_the_rise() -> None:
     assert rise == pytest.approx([np.log(1.5), 0.096], abs=0.01)
     assert exponent == pytest.approx([0.16, 0.07], abs=0.01)
     assert kept.tolist() == [0.87, 0.08]
-
-
-def test_a_strength_beside_its_curve_is_told_from_a_fiftieth_on() -> None:
-    def told(off):
-        body = SimpleNamespace(Sy_Pa=SimpleNamespace(value=3e8 * (1.0 + off)))
-        flow = SimpleNamespace(strength=3e8)
-        given = SimpleNamespace(
-            setup=SimpleNamespace(bodies={"target": body}), flows={"target": flow}
-        )
-        return bool(_apart(given, "target"))
-
-    assert [told(0.019), told(0.021)] == [False, True]
 
 
 @pytest.mark.parametrize(("error", "level"), [(0.024, "quick"), (0.026, "production")])
