@@ -25,7 +25,7 @@ _PRIOR = (0.2, 0.1, 0.1, 0.1)
 # the same sweeps
 _STILL_TO_GO = 0.15
 
-# limit: processor seconds of a deep case with E'/Sy_min = 300 and Sy* = 1, by accuracy, for a
+# limit: processor time [s] of a deep case with E'/Sy_min = 300 and Sy* = 1, by accuracy, for a
 # forecast; 842 published cases (scatter 30 %), times what three of them take less today
 _BASE_S = {"smoke": 5.8, "quick": 10.0, "production": 38.0}
 
