@@ -32,16 +32,9 @@ _PROFILE_DEPTHS = 10
 
 @dataclass(frozen=True)
 class Case:
-    """What one solve is asked to do.
+    """What one solve is asked to do, by a short name that is unique within a design.
 
-    Parameters
-    ----------
-    name
-        Short readable name, unique within a design.
-    problem
-        The pair and the depths; the full fields at its `snapshots` are written beside the file.
-    accuracy
-        Numerical settings.
+    The full fields at the problem's `snapshots` are written beside the file.
     """
 
     name: str
@@ -150,26 +143,11 @@ def standard_case(
     fields: bool = False,
     accuracy: fem.Accuracy,
 ) -> Case:
-    """Make a case with geometric depths from below first yield.
+    """Make a case with `n_depths` geometric depths from below first yield to `deepest`, a Delta/R.
 
-    Parameters
-    ----------
-    name, accuracy
-        As in `Case`.
-    pair, radius_at_least
-        As in `fem.ContactProblem`.
-    deepest
-        Largest Delta/R.
-    n_depths
-        Number of recorded depths.
-    unload_w
-        Depths to unload from, in units of the critical depth.
-    unload_depths
-        Depths to unload from, as Delta/R.
-    through
-        Delta/R that takes the place of the geometric depth nearest to it (0: none).
-    fields
-        Also write the full fields at `through`.
+    It unloads from `unload_w`, in units of the critical depth, and `unload_depths`, Delta/R.
+    `through`, a Delta/R, takes the place of the geometric depth nearest to it (0: none), and with
+    `fields` the full fields there are written.
     """
     onset = pair.first_yield
     if not math.isfinite(onset):

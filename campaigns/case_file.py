@@ -39,20 +39,9 @@ def case_image(
 ) -> bytes:
     """Return an ended case as a sealed file.
 
-    Parameters
-    ----------
-    case
-        The case.
-    solution
-        What the solver gave; none when the worker gave nothing.
-    message
-        Why there is no solution.
-    computed_by
-        Versions and commit of the worker; those of this process by default.
-    fields
-        Names of the files with its full fields.
-    also
-        Writes more into the file.
+    `solution` is none when the worker gave nothing, and `message` says why; `computed_by` holds
+    versions and commit of the worker, those of this process by default. `fields` names the files
+    with its full fields; `also` writes more into the file.
     """
     done = solution is not None and solution.outcome.completed
     ending = solution.outcome.ending if solution else Ending.WORKER_LOST
@@ -74,22 +63,7 @@ def case_image(
 
 
 def write_fields(solution: Solution, folder: Path, *, name: str) -> list[Path]:
-    """Write each kept state as `NAME-DEPTH.vtu`, whole or not at all.
-
-    Parameters
-    ----------
-    solution
-        A solve with snapshots.
-    folder
-        Where the files go; made if needed.
-    name
-        First part of their names.
-
-    Raises
-    ------
-    InputError
-        They cannot be written.
-    """
+    """Write each kept state as `NAME-DEPTH.vtu`, whole or not at all; make the folder if needed."""
     return [
         write_vtu(snapshot, folder / f"{name}-{snapshot.depth:.4g}.vtu")
         for snapshot in solution.snapshots

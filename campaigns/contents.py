@@ -73,13 +73,7 @@ def seal(image: bytes) -> bytes:
 
 
 def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
-    """Refuse a file of which any byte changed since it was written.
-
-    Raises
-    ------
-    InputError
-        It is another kind of file, or was changed.
-    """
+    """Refuse a file of another kind, or of which any byte changed since it was written."""
     if image[: len(_MAGIC)] != _MAGIC:
         raise InputError(
             "not a file of ours, or its head is damaged", source=str(path),
@@ -97,13 +91,7 @@ def damage(error: Exception) -> str:
 
 
 def open_image(image: bytes) -> h5py.File:
-    """Open a file that was read into memory.
-
-    Raises
-    ------
-    OSError
-        It is no HDF5 file, or cut short.
-    """
+    """Open a file that was read into memory; OSError where it is no HDF5 file, or cut short."""
     try:
         return h5py.File(h5py.h5f.open_file_image(image))
     except (ValueError, RuntimeError):
@@ -142,10 +130,8 @@ class Tree:
 def read_tree(group: h5py.Group, *, depth: int = 0) -> Tree:
     """Read a group and those in it.
 
-    Raises
-    ------
-    ValueError
-        Something leads elsewhere, claims more than it holds, or is of a kind that we never write.
+    ValueError where something leads elsewhere, claims more than it holds, or is of a kind that we
+    never write.
     """
     if depth > _GROUPS_DEEP:
         raise ValueError(f"{group.name} lies too deep")
@@ -165,13 +151,7 @@ def read_tree(group: h5py.Group, *, depth: int = 0) -> Tree:
 
 
 def read_array(data: h5py.Dataset) -> npt.NDArray[Any]:
-    """Read a dataset that holds what it claims.
-
-    Raises
-    ------
-    ValueError
-        As `read_tree`.
-    """
+    """Read a dataset that holds what it claims; ValueError as `read_tree`."""
     if data.dtype.kind not in _KINDS or data.dtype.hasobject or data.shape is None:
         raise ValueError(f"{data.name} is of kind {data.dtype}")
     if data.is_virtual or data.external:

@@ -42,16 +42,8 @@ _DEPTH = 0.1
 class Forecast:
     """What is left of a sweep.
 
-    Parameters
-    ----------
-    todo
-        The cases, in the order of computing.
-    workers
-        How many are computed at a time.
-    ended
-        Cases that ended before, with their processor seconds.
-    pace
-        Seconds that one measured processor second takes here.
+    `todo` in the order of computing; `ended` cases with their processor seconds; `pace` is the
+    seconds that one measured processor second takes here.
     """
 
     def __init__(

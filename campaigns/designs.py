@@ -97,13 +97,7 @@ DESIGNS: dict[str, Design] = {
 
 
 def design_named(name: str) -> Design:
-    """Return a design.
-
-    Raises
-    ------
-    InputError
-        There is none of that name; the message lists the known ones.
-    """
+    """Return a design, or refuse a name with those that are known."""
     if name not in DESIGNS:
         raise InputError(f"{name!r}", key="design", allowed=", ".join(DESIGNS))
     return DESIGNS[name]

@@ -85,15 +85,7 @@ def _check_same(computed_by: Mapping[str, str], *, where: str) -> None:
 
 @dataclass(frozen=True)
 class LocalExecutor:
-    """Worker processes on this machine, one thread each.
-
-    Parameters
-    ----------
-    workers
-        How many.
-    work
-        What they do with a case.
-    """
+    """Worker processes on this machine, one thread each, and what they do with a case."""
 
     workers: int
     work: Work = solve_specification
@@ -115,20 +107,9 @@ class LocalExecutor:
 
 @dataclass(frozen=True)
 class DaskExecutor:
-    """Workers of a dask cluster.
+    """Workers of a dask cluster, as many as were known when the connection was made.
 
-    Parameters
-    ----------
-    address
-        The scheduler's address, `tcp://HOST:PORT`.
-    workers
-        Workers known when the connection was made.
-    client
-        The connection.
-    work
-        What the workers do with a case.
-    patience_s
-        How long to go on without any worker.
+    `patience_s` is how long to go on without any.
     """
 
     address: str
@@ -143,20 +124,9 @@ class DaskExecutor:
     ) -> DaskExecutor:
         """Connect to a scheduler, wait for a worker, and see that all are of this source.
 
-        Parameters
-        ----------
-        address
-            `tcp://HOST:PORT`, or `tls://HOST:PORT` with the certificates of dask's configuration.
-        timeout_s
-            How long to wait for the scheduler.
-        patience_s
-            How long to wait for a worker, now and whenever there is none.
-
-        Raises
-        ------
-        InputError
-            dask is not installed, nobody answers at the address, there is no worker, or one has
-            other versions.
+        The address is `tcp://HOST:PORT`, or `tls://HOST:PORT` with the certificates of dask's
+        configuration. Refused where dask is not installed, nobody answers within `timeout_s`, no
+        worker comes within `patience_s`, now or later, or one has other versions.
         """
         try:
             from distributed import Client
@@ -183,12 +153,8 @@ class DaskExecutor:
         """Compute the cases in a sliding window of a few a worker; give each as it ends.
 
         Workers may come and go, as under a batch system: the window follows their number, and dask
-        sends the cases of a worker that died to another.
-
-        Raises
-        ------
-        InputError
-            The scheduler went away, all workers did, or one has other versions.
+        sends the cases of a worker that died to another. Refused where the scheduler went away, all
+        workers did, or one has other versions.
         """
         from distributed import as_completed
 

@@ -30,17 +30,7 @@ recorded depths, over the local value.
 
 
 def manifest(folder: Path, names: Iterable[str], made: Mapping[str, bytes]) -> str:
-    """Return PARTS.md for the parts of a folder.
-
-    Parameters
-    ----------
-    folder
-        Where the parts lie.
-    names
-        All of them.
-    made
-        Contents of those that are not written yet.
-    """
+    """Return PARTS.md for all parts of a folder; `made` are contents not written yet."""
     parts = []
     for name in sorted(names):
         image = made.get(name) or (folder / name).read_bytes()

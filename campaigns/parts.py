@@ -101,13 +101,7 @@ _COARSE = "smoke"
 
 
 def published_parts(wanted: Callable[[str], bool] = bool) -> list[Path]:
-    """Return the parts of the release whose names are wanted, but for the coarse ones.
-
-    Raises
-    ------
-    InputError
-        There are none.
-    """
+    """Return the parts of the release whose names are wanted, but for the coarse ones."""
     names = sorted(path.name for path in PUBLISHED.glob("*.h5"))
     found = [PUBLISHED / name for name in names if wanted(name) and not name.startswith(_COARSE)]
     if not found:
@@ -118,15 +112,7 @@ def published_parts(wanted: Callable[[str], bool] = bool) -> list[Path]:
 
 
 def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
-    """Return cases as the bytes of one part.
-
-    Parameters
-    ----------
-    records
-        The cases.
-    about
-        What the part says of itself: design, numerics version.
-    """
+    """Return cases as the bytes of one part, and `about`: design, numerics version."""
     with new_image() as made:
         file = made.file
         file.attrs["format"] = PART_FORMAT
@@ -158,13 +144,7 @@ def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
 
 @contextmanager
 def opened_part(path: Path) -> Iterator[h5py.File]:
-    """Open a part of which no byte has changed.
-
-    Raises
-    ------
-    InputError
-        The file is damaged, or no part.
-    """
+    """Open a part, or refuse one of which a byte has changed."""
     image = read_bytes(path, most=_READ_PART_BYTES, allowed="a published part")
     check_seal(image, path)
     try:
@@ -181,13 +161,7 @@ def opened_part(path: Path) -> Iterator[h5py.File]:
 
 
 def read_part(path: Path) -> list[CaseRecord]:
-    """Read all cases of a part.
-
-    Raises
-    ------
-    InputError
-        The file is damaged or no part.
-    """
+    """Read all cases of a part, or refuse one that is damaged."""
     with opened_part(path) as file:
         records = _read_records(file)
         for record, digest in zip(records, texts_of(file, DIGEST), strict=True):
@@ -208,13 +182,7 @@ def is_part(path: Path) -> bool:
 
 
 def checksums(folder: Path) -> dict[str, str]:
-    """Checksum of each part of a folder by its name; empty where there is no list.
-
-    Raises
-    ------
-    InputError
-        The list is damaged.
-    """
+    """Checksum of each part of a folder by its name; empty where there is no list."""
     place = folder / CHECKSUMS
     if not place.exists():
         return {}

@@ -39,19 +39,7 @@ _PART_BYTES = 10_000_000
 
 @dataclass(frozen=True)
 class Published:
-    """One design of a published data set.
-
-    Parameters
-    ----------
-    design
-        Its name.
-    parts
-        How many files.
-    done, failed
-        Cases.
-    numerics_version
-        Of the solver that computed it.
-    """
+    """One design of a published data set: how many files, cases, and of which solver."""
 
     design: str
     parts: int
@@ -70,26 +58,9 @@ def publish(
 ) -> list[Path]:
     """Write a complete design as parts into `folder`; parts that exist are never touched.
 
-    Parameters
-    ----------
-    design
-        What is published; every one of its cases has ended in `source`.
-    source
-        Folder of the run.
-    folder
-        Where the data set lies.
-    most_bytes
-        Size that no part exceeds.
-
-    Returns
-    -------
-    list of Path
-        The parts written.
-
-    Raises
-    ------
-    InputError
-        The run is not complete, cases of it are published already, or the parts become too many.
+    Every one of its cases has ended in the run at `source`. Returns the parts written, none larger
+    than `most_bytes`. Refused where the run is not complete, cases of it are published already, or
+    the parts become too many.
     """
     store = Store(source)
     status = status_of(design, store)
@@ -128,10 +99,7 @@ def publish(
 def read_published(folder: Path) -> list[CaseRecord]:
     """Read all completed cases of a published data set.
 
-    Raises
-    ------
-    InputError
-        A part is missing, or its checksum is not the published one.
+    Refused where a part is missing, or its checksum is not the published one.
     """
     records = (record for path in _checked_parts(folder) for record in read_part(path))
     return [record for record in records if record.status == "done"]
@@ -140,10 +108,7 @@ def read_published(folder: Path) -> list[CaseRecord]:
 def published_designs(folder: Path) -> list[Published]:
     """Say which designs a data set holds, without reading its curves.
 
-    Raises
-    ------
-    InputError
-        A part is missing, or its checksum is not the published one.
+    Refused as `read_published`.
     """
     found: dict[str, list[tuple[int, Counter[str]]]] = {}
     for path in _checked_parts(folder):
@@ -186,16 +151,9 @@ def _checked_parts(folder: Path) -> list[Path]:
 
 @dataclass(frozen=True)
 class Difference:
-    """Largest relative differences between runs of the same cases, at the same depths.
+    """Largest relative differences of F, a and delta_s* of the cases that two runs share.
 
-    Parameters
-    ----------
-    cases
-        How many cases both have.
-    same
-        Whether they are cases of the same identity, or only of the same pair.
-    force, radius, share
-        Largest relative difference of F, a and delta_s*; 0 without common cases.
+    `same` says whether they are cases of the same identity, or only of the same pair.
     """
 
     cases: int

@@ -45,15 +45,7 @@ class Quality:
 
 
 def quality_of(curve: Mapping[str, Array], R: float) -> Quality:
-    """Judge a loading curve.
-
-    Parameters
-    ----------
-    curve
-        Arrays by the names of `campaigns.schema.CURVE`, shape (n,) [SI].
-    R
-        Radius of the sphere [m].
-    """
+    """Judge the curve of a sphere of radius R [m]: `campaigns.schema.CURVE`, shape (n,) [SI]."""
     depth = curve["delta"]
     if len(depth) == 0:
         return Quality(math.nan, math.nan, math.nan, math.nan, 0.0, 0.0)
@@ -73,12 +65,8 @@ def steps_not_in(
 ) -> tuple[float, float, float]:
     """Largest steps of F, a and delta_s* that a finer solve of the same case does not show.
 
-    They are the steps of the ratio of the two curves: what both show cancels.
-
-    Parameters
-    ----------
-    curve, finer
-        As for `quality_of`; compared at the depths of the first within those of the second.
+    They are the steps of the ratio of the two curves, at the depths of the first within those of
+    the second: what both show cancels.
     """
     depth = curve["delta"]
     within = depth <= finer["delta"][-1] * (1.0 + 1e-9)

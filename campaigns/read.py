@@ -16,12 +16,7 @@ def read_curves(path: Path) -> list[CaseRecord]:
     """Read all completed cases of a run, a published part, a folder of parts or one case's file.
 
     Where a run holds cases of several numerics versions, only those of the present one are given:
-    the same pair would otherwise come twice.
-
-    Raises
-    ------
-    InputError
-        There is nothing, it holds no cases, or it is damaged.
+    the same pair would otherwise come twice. Refused where there is nothing, or it is damaged.
     """
     if (path / CHECKSUMS).exists():
         done = read_published(path)

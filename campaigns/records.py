@@ -108,13 +108,7 @@ def read_summary(file: h5py.Group, _path: Path) -> Summary:
 
 
 def read_case(file: h5py.Group, path: Path) -> CaseRecord:
-    """Read a case whole.
-
-    Raises
-    ------
-    InputError
-        A dataset is missing or in another unit.
-    """
+    """Read a case whole; refuse one without a dataset, or with one in another unit."""
     tree = read_tree(file)
     attributes, prefix = tree.attributes, "counter_"
     names = sorted((n for n in tree.groups if n.startswith("unload-")), key=lambda n: int(n[7:]))

@@ -62,15 +62,8 @@ def cases_to_do(
 ) -> dict[str, Case]:
     """Cases that a run would compute, in its order, by their id.
 
-    Parameters
-    ----------
-    design, store
-        The sweep and what is there of it.
-    again
-        Statuses that are computed again. A case that failed is tried with smaller steps and
-        elements; its identity stays.
-    share
-        Of the design's cases, where several runs share them.
+    Those with a status in `again` are computed again: a case that failed is tried with smaller
+    steps and elements; its identity stays. `share` is this run's, where several share the design.
     """
     stored = store.statuses()
     mine = list(distinct_cases(design).items())[share.part - 1 :: share.of]
@@ -94,34 +87,10 @@ def run_design(
 ) -> Status:
     """Compute what a design lacks in a run's folder; several may do so at once.
 
-    Parameters
-    ----------
-    design
-        The sweep.
-    folder
-        The run's folder, made if needed; cases it already holds are not computed again.
-    executor
-        Where to compute.
-    time_limit_s
-        Wall-clock limit of one case.
-    again
-        Statuses that are computed again, more finely, for example `{"failed"}`.
-    share
-        Of the design's cases, where several runs share them.
-    until
-        Value of `time.monotonic()` after which no further result is waited for.
-    report
-        Called after each case.
-
-    Returns
-    -------
-    Status
-        The counts at the end.
-
-    Raises
-    ------
-    InputError
-        A case cannot be written; all completed cases are kept.
+    The folder is made if needed; `again` and `share` are those of `cases_to_do`. One case may take
+    `time_limit_s` of the clock; after `until`, of `time.monotonic()`, no further result is waited
+    for. `report` is called after each case. A case that cannot be written is refused; all completed
+    cases are kept.
     """
     store = Store(folder)
     cases = distinct_cases(design)

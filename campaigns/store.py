@@ -43,13 +43,7 @@ _REPAIR = "`dentscope campaign repair` sets it aside, and the next run computes 
 
 
 class Store:
-    """The cases of a run.
-
-    Parameters
-    ----------
-    folder
-        The run's folder; it need not exist yet.
-    """
+    """The cases of a run, in a folder that need not exist yet."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -66,17 +60,9 @@ class Store:
         message: str = "",
         computed_by: Mapping[str, str] | None = None,
     ) -> None:
-        """Store one ended case.
+        """Store one ended case, as `campaigns.case_file.case_image` takes it.
 
-        Parameters
-        ----------
-        case, solution, message, computed_by
-            As for `campaigns.case_file.case_image`.
-
-        Raises
-        ------
-        InputError
-            It cannot be written; all completed cases are kept.
+        Where it cannot be written all completed cases are kept.
         """
         if self.folder.is_file():
             _refuse_file(self.folder)
@@ -124,10 +110,7 @@ class Store:
     def repair(self) -> tuple[int, list[str]]:
         """Set aside the cases that are damaged, as `NAME.damaged` beside where they were.
 
-        Returns
-        -------
-        tuple
-            How many cases are whole, and a line for each that was not.
+        Returns how many cases are whole, and a line for each that was not.
         """
         lost = []
         files = self._files()
@@ -187,13 +170,7 @@ def _status(path: Path) -> str:
 
 @contextmanager
 def opened_case(path: Path) -> Iterator[h5py.File]:
-    """Open a case's file of which no byte has changed.
-
-    Raises
-    ------
-    InputError
-        It is damaged, or no file of a case.
-    """
+    """Open a case's file, or refuse one of which a byte has changed."""
     image = read_bytes(path, most=_CASE_BYTES, allowed="a file of one case (.h5)")
     check_seal(image, path, allowed=_REPAIR)
     try:

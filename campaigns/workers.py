@@ -42,16 +42,8 @@ def answers(
 ) -> Generator[tuple[str, Answer]]:
     """Let processes do the work for each order; give each answer as it comes.
 
-    Parameters
-    ----------
-    work
-        A function at the top of a module.
-    orders
-        Its arguments, by key.
-    workers
-        How many processes.
-    timeout_s
-        After which a process is taken for one that hangs, and ended.
+    `work` is a function at the top of a module; one that takes longer than `timeout_s` is taken for
+    one that hangs, and ended.
     """
     # workers are spawned: the variables act before their numpy loads
     one_thread_each()

@@ -87,13 +87,7 @@ def version() -> None:
 
 
 def run(arguments: list[str] | None = None) -> int:
-    """Run one command and return its exit code.
-
-    Parameters
-    ----------
-    arguments
-        What follows `dentscope` on the command line; by default the process's own arguments.
-    """
+    """Run one command, by default the process's own arguments, and return its exit code."""
     try:
         with listening():
             result = app(args=arguments, standalone_mode=False, prog_name="dentscope")

@@ -163,13 +163,7 @@ def _of_file(speeds: tuple[float, ...]) -> list[float]:
 
 
 def _speeds(text: str) -> list[float]:
-    """Read `0.1:10` as a range, `1,2,5` as they are.
-
-    Raises
-    ------
-    InputError
-        No numbers that a speed may have.
-    """
+    """Read `0.1:10` as a range, `1,2,5` as they are; refuse what no speed may be."""
     import numpy as np
 
     from ..core.rig import SPEEDS

@@ -37,15 +37,7 @@ def present() -> bool:
 def needed_for(what: str) -> None:
     """Pass where the workshop is present.
 
-    Parameters
-    ----------
-    what
-        The command, as the user wrote it.
-
-    Raises
-    ------
-    InputError
-        Elsewhere: says where to get it.
+    Elsewhere refuse the command `what` and say where to get it.
     """
     if not present():
         raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
@@ -57,15 +49,7 @@ def module(name: str) -> ModuleType:
 
 
 def add(group: typer.Typer, name: str) -> None:
-    """Add a command, or a group of commands, of the workshop to a group of the command line.
-
-    Parameters
-    ----------
-    group
-        What it is added to.
-    name
-        One of `COMMANDS`.
-    """
+    """Add one of `COMMANDS` of the workshop to a group of the command line."""
     last = name.rsplit(" ", 1)[-1]
     if not present():
         hidden = group.command(last, hidden=True, add_help_option=False, context_settings=_ANYTHING)

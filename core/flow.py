@@ -102,10 +102,7 @@ def _spline(curve: FlowCurve) -> Any:
 def tabulated(strain: Array, stress: Array) -> FlowCurve:
     """Flow curve through measured rows, smooth and without overshoot (Fritsch and Butland, 1984).
 
-    Parameters
-    ----------
-    strain, stress
-        Equivalent plastic strain [-] and true stress [Pa], shape (n,); two rows make a line.
+    Equivalent plastic strain [-] and true stress [Pa], shape (n,); two rows make a line.
     """
     rows = (tuple(map(float, strain)), tuple(map(float, stress)))
     if len(strain) != len(stress) or len(strain) < 2 or not (np.diff(strain) > 0.0).all():

@@ -19,13 +19,7 @@ class NotebookFigure(Figure):  # type: ignore[misc]
         return stream.getvalue()
 
     def show(self, warn: bool = True) -> None:
-        """Show it in a window, and wait until that is closed.
-
-        Raises
-        ------
-        InputError
-            There is no screen.
-        """
+        """Show it in a window, and wait until that is closed; refused without a screen."""
         import matplotlib
         from matplotlib import pyplot
 

@@ -65,13 +65,7 @@ def cannot_write(error: OSError, path: Path | str) -> InputError:
 
 
 def folder_for_output(folder: Path) -> Path:
-    """Make a folder, and those that it lies in.
-
-    Raises
-    ------
-    InputError
-        It cannot be made, or is no folder.
-    """
+    """Make a folder, and those that it lies in; refused where that cannot be."""
     try:
         _make_folder(folder)
     except (OSError, ValueError) as error:
@@ -82,10 +76,7 @@ def folder_for_output(folder: Path) -> Path:
 def write_file(path: Path, content: bytes | str) -> Path:
     """Write a file whole or not at all; its folder is made if needed.
 
-    Raises
-    ------
-    InputError
-        It cannot be written; what was there is unchanged.
+    Where it cannot be written, what was there is unchanged.
     """
     # a name that is no text in UTF-8 is no reason to fail
     data = content.encode(errors="replace") if isinstance(content, str) else content
@@ -100,17 +91,8 @@ def write_file(path: Path, content: bytes | str) -> Path:
 def write_files(folder: Path, files: Mapping[str, bytes | str]) -> None:
     """Write several files of one folder, all or none; the caller holds its lock.
 
-    Parameters
-    ----------
-    folder
-        Made if needed.
-    files
-        Contents by path within the folder.
-
-    Raises
-    ------
-    InputError
-        They cannot be written; the folder is as it was, or is finished when it is next looked at.
+    `files` are contents by path within the folder, which is made if needed. Where they cannot be
+    written the folder is as it was, or is finished when it is next looked at.
     """
     contents = {k: v.encode() if isinstance(v, str) else v for k, v in files.items()}
     for name in contents:
@@ -123,10 +105,7 @@ def write_files(folder: Path, files: Mapping[str, bytes | str]) -> None:
 def finish(folder: Path) -> None:
     """Finish what another process had begun to write into a folder; do nothing if there is nothing.
 
-    Raises
-    ------
-    InputError
-        It belongs to another state of this folder, is damaged, or cannot be written.
+    Refused where it belongs to another state of this folder, is damaged, or cannot be written.
     """
     if (folder / PENDING).exists():
         with locked(folder):
@@ -154,10 +133,7 @@ def finish_pending(folder: Path) -> None:
 def locked(folder: Path) -> Iterator[None]:
     """Hold a folder, there or not yet, for oneself; wait for another process that does.
 
-    Raises
-    ------
-    InputError
-        It cannot be locked, or another process holds it for longer than `_FOLDER_WAIT_S`.
+    Refused where it cannot be locked, or another holds it for longer than `_FOLDER_WAIT_S`.
     """
     # what lies in it may still be refused, and then nothing new should lie anywhere: the lock is
     # one of the folder around it, and leaves no file

@@ -214,15 +214,7 @@ class MaterialTable(InputTable):
     def numbers(self, key: str, *, source: str = "") -> dict[str, float]:
         """Return the numbers of this table by their keys, of what is not stated those that follow.
 
-        Parameters
-        ----------
-        key, source
-            Table and file that an error names.
-
-        Raises
-        ------
-        InputError
-            A number of a rigid body's metal is given.
+        Errors name `key` and `source`; a number of a rigid body's metal is refused.
         """
         if self.rigid:
             for name in ("E_Pa", "nu", "Sy_Pa", "hardness_Pa"):
@@ -236,15 +228,8 @@ class MaterialTable(InputTable):
     def to_material(self, key: str = "", *, source: str = "") -> Material:
         """Return the `Material` at the stated values.
 
-        Parameters
-        ----------
-        key, source
-            Table and file that an error names.
-
-        Raises
-        ------
-        InputError
-            Modulus or Poisson's ratio is missing, or a number of a rigid body is given.
+        Errors name `key` and `source`: modulus or Poisson's ratio is missing, or a number of a
+        rigid body is given.
         """
         numbers = self.numbers(key, source=source)
         rigid = frozenset({key} if self.rigid else ())
@@ -327,13 +312,7 @@ class TargetTable(BodyTable):
 
 
 def possible_inertia(inertia: Quantity | None, info: ValidationInfo) -> Quantity | None:
-    """Return a striker's moment of inertia, as a check of its table.
-
-    Raises
-    ------
-    ValueError
-        No body of this mass and size has so much.
-    """
+    """Return a striker's moment of inertia, or refuse what no body of this mass and size has."""
     given = {k: value_of(info.data.get(k), 0.0) for k in ("mass_kg", "length_m")}
     sizes = (value_of(info.data.get(k), 0.0) for k in ("radius_m", "tip_radius_m"))
     most = most_inertia(given["mass_kg"], max(sizes), given["length_m"])
@@ -434,12 +413,8 @@ class StrikerTable(BodyTable):
     def numbers(self, key: str, *, source: str = "") -> dict[str, float]:
         """Return the numbers of this table by their keys, of what is not stated those that follow.
 
-        The length of a sphere is 0; its radius, where that is left out, its tip's.
-
-        Raises
-        ------
-        InputError
-            A number of a rigid body's metal is given.
+        The length of a sphere is 0; its radius, where that is left out, its tip's. A number of a
+        rigid body's metal is refused.
         """
         return {
             **super().numbers(key, source=source), f"{key}.radius_m": self.body_radius,
@@ -547,13 +522,7 @@ class Rig(InputTable):
         return {"target": self.target, **{f"strikers.{k}": t for k, t in self.strikers.items()}}
 
     def numbers(self, *, source: str = "") -> RigNumbers:
-        """Return every number as stated, or as it follows; `source` names the file in errors.
-
-        Raises
-        ------
-        InputError
-            A number of a rigid body is given.
-        """
+        """Return every number as stated, or as it follows; `source` names the file in errors."""
         of = {**quantities(self), **quantities(self.friction, "friction."),
               **quantities(self.environment, "environment.")}  # fmt: skip
         for key, table in self.bodies.items():

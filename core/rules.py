@@ -16,17 +16,10 @@ Number = TypeVar("Number")
 
 
 def rule(value: Number, meaning: str, source: str = "chosen; no measurement is kept") -> Number:
-    """Return a field of a register: a number with what is said of it.
+    """Return a field of a register: a number, or several that belong together, and what it is.
 
-    Parameters
-    ----------
-    value
-        The number, or several that belong together.
-    meaning
-        What it is, its unit at the end.
-    source
-        Where it is from: a standard, a paper, a reason, or the benchmark that chose it; what has
-        none was chosen.
+    `meaning` ends with its unit; `source` is a standard, a paper, a reason, or the benchmark that
+    chose it.
     """
     found: Number = field(default=value, metadata={"meaning": meaning, "source": source})
     return found

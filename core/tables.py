@@ -11,13 +11,7 @@ from .errors import missing_extra
 
 
 def frame(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> Any:
-    """Return rows, or columns by name, as a pandas data frame.
-
-    Raises
-    ------
-    InputError
-        pandas is not installed.
-    """
+    """Return rows, or columns by name, as a pandas data frame; refused without pandas."""
     if find_spec("pandas") is None:
         raise missing_extra("a data frame", "tables")
     import pandas
@@ -26,13 +20,7 @@ def frame(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> Any:
 
 
 def parquet(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> bytes:
-    """Return the same as the content of a Parquet file.
-
-    Raises
-    ------
-    InputError
-        pandas or pyarrow is not installed.
-    """
+    """Return the same as the content of a Parquet file; refused without pandas or pyarrow."""
     if find_spec("pyarrow") is None:
         raise missing_extra("a Parquet file", "tables")
     content: bytes = frame(table).to_parquet(None, index=False)

@@ -63,19 +63,9 @@ class ExportedBall(NamedTuple):
 
 
 def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
-    """Read a set-up of `dentscope impact` or a CASE.toml.
+    """Read a set-up of `dentscope impact` or a CASE.toml; `mass` [kg] in place of the file's.
 
-    Parameters
-    ----------
-    file
-        Either.
-    mass
-        Of the ball, in place of the file's [kg].
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each; what strikes is no ball, or its mass is not known.
+    Every mistake is a line; refused is what strikes and is no ball, or has no known mass.
     """
     content = read_toml(file)
     of_impact = "strikers" in content or "impact" in content

@@ -129,12 +129,8 @@ class CaseFile(InputTable):
 def read_flow_curve(path: Path) -> FlowCurve:
     """Read a table of true stress over plastic strain: columns plastic_strain and stress_Pa.
 
-    The second may be called true_stress_Pa, as in a recording set.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each, with its row.
+    The second may be called true_stress_Pa, as in a recording set. Every mistake is a line with its
+    row.
     """
     from ..core.inputs.csv_table import Problems, numbers, read_text_table
 
@@ -168,13 +164,7 @@ def read_flow_curve(path: Path) -> FlowCurve:
 
 
 def read_pair(file: Path) -> tuple[CaseFile, Pair]:
-    """Read CASE.toml: its keys, and its two bodies.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
+    """Read CASE.toml: its keys, and its two bodies. Every mistake is a line."""
     stated = read_toml(file)
     if stated.keys() & {"strikers", "impact"}:
         raise InputError(
@@ -211,13 +201,7 @@ def _check_first(first: float, onset: float, last: float, *, source: str) -> Non
 
 
 def read_case(file: Path) -> tuple[ContactProblem, Accuracy]:
-    """Read CASE.toml into the solver's problem and accuracy.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
+    """Read CASE.toml into the solver's problem and accuracy. Every mistake is a line."""
     content, pair = read_pair(file)
     friction = value_of(content.friction.coefficient, 0.0)
     return case_of(pair, content.load, friction, level=content.accuracy.level, source=str(file))
@@ -228,10 +212,7 @@ def case_of(
 ) -> tuple[ContactProblem, Accuracy]:
     """Return the solver's problem and accuracy of a pair and how it is pressed.
 
-    Raises
-    ------
-    InputError
-        A depth outside what can be solved, or an unknown level.
+    A depth outside what can be solved and an unknown level are refused.
     """
     # loaded after the file is read: a mistake in it is told at once
     from .. import fem

@@ -121,13 +121,7 @@ def nearest(pair: Pair, *, last: float) -> Reference | None:
 
 
 def departure(law: ContactLaw, reference: Reference) -> Departure:
-    """Return how far a law is from the finite elements of a pair.
-
-    Raises
-    ------
-    InputError
-        The law is one of another pair.
-    """
+    """Return how far a law is from the finite elements of a pair; a law of another is refused."""
     pair = reference.pair
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DomainWarning)  # how far it is off is told
@@ -166,13 +160,7 @@ def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float
 
 @cache
 def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
-    """Completed cases of metals that harden, or of those that do not, none of them coarse.
-
-    Raises
-    ------
-    InputError
-        The published cases are missing or damaged.
-    """
+    """Completed cases of metals that harden, or of those that do not, none of them coarse."""
     parts = published_parts(lambda name: name.startswith(_HARDENS) != perfectly_plastic)
     found = [
         record for path in parts for record in read_curves(path)

@@ -104,16 +104,10 @@ class Dent:
 
 @dataclass(frozen=True)
 class MeasuredContact:
-    """What people measure of a solved pair.
+    """What people measure of a solved pair: first yield, the deepest pressures, what is left.
 
-    Parameters
-    ----------
-    first_yield
-        Where the weaker body begins to yield; none where neither does.
-    pressed
-        The pressures at the deepest approach; none where it was not reached.
-    dents
-        What every unloading leaves.
+    `first_yield` is none where neither body yields, `pressed` where that depth was not reached;
+    `dents` has one of every unloading.
     """
 
     first_yield: FirstYield | None
@@ -173,12 +167,7 @@ def _pressed(solution: Solution) -> PressedContact | None:
 def brinell(load: float, ball: float, dent: float) -> float:
     """Hardness after Brinell, 0.102 F over the dent's spherical surface (ISO 6506-1) [kgf/mm2].
 
-    Parameters
-    ----------
-    load
-        Force [N].
-    ball, dent
-        Diameters of the ball and of the dent [m]; nan for a dent that is no smaller.
+    Force [N], diameters of ball and dent [m]; nan for a dent that is no smaller.
     """
     if not dent < ball:
         return math.nan

@@ -173,15 +173,7 @@ def case(
 
 
 def solved(problem: fem.ContactProblem, accuracy: fem.Accuracy, report: Report = _silent) -> Solved:
-    """Solve a pair and state its uncertainty.
-
-    Parameters
-    ----------
-    problem, accuracy
-        From `case_of`.
-    report
-        Told how far the solve is, from 0 to 1.
-    """
+    """Solve a pair and state its uncertainty; `report` is told how far it is, from 0 to 1."""
     solution = fem.solve(problem, accuracy=accuracy, progress=report)
     if len(solution.loading.delta) == 0:
         return Solved(solution, None, accuracy.level)

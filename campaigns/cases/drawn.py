@@ -103,10 +103,7 @@ def challenge() -> tuple[Case, ...]:
 def challenge_cases(digest: str) -> tuple[Case, ...]:
     """24 pairs drawn from a checksum: 12 anywhere, 8 at the steep part, 4 of soft, strong bodies.
 
-    Parameters
-    ----------
-    digest
-        Hexadecimal; its first twelve digits are the seed, and stand in the cases' names.
+    Its first twelve hexadecimal digits are the seed, and stand in the cases' names.
     """
     draw = np.random.default_rng(int(digest[:12], 16)).random((24, 6))
     name = f"challenge-{digest[:12]}"

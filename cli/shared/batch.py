@@ -28,24 +28,11 @@ class Job(NamedTuple):
 def jobs_of(
     kind: Kind, files: Sequence[Path], listed: Path | None, given: Mapping[str, Any]
 ) -> list[Job]:
-    """Return what is to be reduced.
+    """Return what is to be reduced: raw files, folders of them, and files of a list.
 
-    Parameters
-    ----------
-    kind
-        Of the reduction.
-    files
-        Raw files, and folders of them.
-    listed
-        A table with the column `file`, from its own folder, and columns named as options, which
-        count for that file alone: a clip with its own scale and rate.
-    given
-        Options of all of them.
-
-    Raises
-    ------
-    InputError
-        Nothing to reduce, a list that cannot be read, or two files that would name one trial.
+    `listed` has the column `file`, from its own folder, and columns named as options, which count
+    for that file alone; `given` are options of all. Refused where there is nothing to reduce, a
+    list cannot be read, or two files would name one trial.
     """
     jobs = [Job(f, dict(given), "command line") for path in files for f in _within(path, kind)]
     if listed is not None:

@@ -38,10 +38,7 @@ def file_option(about: str, *, name: str = "--to") -> Any:
 def writable_folder(path: Path, *, key: str) -> Path:
     """Return the folder; it need not exist yet.
 
-    Raises
-    ------
-    InputError
-        It is a file, lies below one, or may not be written.
+    Refused where it is a file, lies below one, or may not be written.
     """
     there = path.absolute()
     while not there.exists() and not there.is_symlink() and there != there.parent:
@@ -58,13 +55,7 @@ def writable_folder(path: Path, *, key: str) -> Path:
 
 
 def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
-    """Return a word that an option takes.
-
-    Raises
-    ------
-    InputError
-        It takes others.
-    """
+    """Return a word that an option takes, or refuse it."""
     if asked not in allowed:
         known = ", ".join(filter(None, allowed))
         raise InputError(repr(asked), source=_LINE, key=key, allowed=known)
@@ -74,19 +65,8 @@ def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
 def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
     """Refuse options and arguments that do nothing beside another one.
 
-    Parameters
-    ----------
-    context
-        Of the command.
-    option
-        What rules them out, as it is told.
-    names
-        Parameters of the command, as its function calls them.
-
-    Raises
-    ------
-    InputError
-        One of them is given on the command line.
+    `option` is what rules them out, as it is told; `names` are parameters of the command's
+    function.
     """
     for parameter in context.command.params:
         source = context.get_parameter_source(parameter.name or "")

@@ -31,18 +31,8 @@ def show_table(
 ) -> None:  # fmt: skip
     """Print a table, in parts where the width does not hold all columns.
 
-    Parameters
-    ----------
-    to
-        From `console`.
-    head
-        Names of the columns; the first is repeated in every part.
-    rows
-        Cells, as many as columns.
-    title
-        Line above.
-    align
-        Of all columns but the first, which is on the left: numbers right, words left.
+    The first column is repeated in every part, and stands on the left; `align` is that of the
+    others: numbers right, words left.
     """
     if title:
         to.print(title)

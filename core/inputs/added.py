@@ -25,13 +25,7 @@ def names_added(group: str) -> tuple[str, ...]:
 
 
 def added(group: str, name: str) -> Any:
-    """Load what a package adds to a group under a name.
-
-    Raises
-    ------
-    InputError
-        There is no such name, or its package fails.
-    """
+    """Load what a package adds to a group under a name, or refuse a name that none has."""
     found = tuple(entry_points(group=group, name=name))
     if not found:
         raise InputError(f"no {name!r}", key=group, allowed=", ".join(names_added(group)))

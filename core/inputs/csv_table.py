@@ -52,16 +52,9 @@ class Problems:
 
 @dataclass(frozen=True, slots=True)
 class TextTable:
-    """The cells of a file as text.
+    """The cells of a file as text, by column in the file's order.
 
-    Parameters
-    ----------
-    columns
-        Column names, in the file's order.
-    rows
-        Number of each row in the file (the header is row 1), shape (n,).
-    cells
-        The text of each column, n entries each.
+    `rows` are numbers of the rows in the file (the header is row 1), shape (n,).
     """
 
     columns: tuple[str, ...]
@@ -72,18 +65,11 @@ class TextTable:
 def read_text_table(
     path: Path, known: Iterable[str], problems: Problems, *, free: str = ""
 ) -> TextTable | None:
-    """Read a table as text; `None` if there is nothing to go on with.
+    """Read a table of UTF-8, commas, one header line as text.
 
-    Parameters
-    ----------
-    path
-        The file: UTF-8, commas, one header line.
-    known
-        Names that a column may have.
-    problems
-        Where mistakes go.
-    free
-        Beginning of names that any column may have.
+    `None` if it holds nothing to go on with.
+
+    Mistakes go to `problems`. `known` are names that a column may have; any may begin with `free`.
     """
     try:
         raw = read_bytes(path, most=_TABLE_BYTES, allowed="a table of comma-separated values")
@@ -208,13 +194,7 @@ def numbers(table: TextTable, column: str, problems: Problems) -> Array:
 
 
 def selection(which: str, *, source: str) -> tuple[str, str]:
-    """Return column and value of `COLUMN=VALUE`, the rows that an option picks.
-
-    Raises
-    ------
-    InputError
-        Not of that form.
-    """
+    """Return column and value of `COLUMN=VALUE`, the rows that an option picks."""
     column, sign, value = which.partition("=")
     if not sign:
         raise InputError(repr(which), source=source, key="select", allowed="COLUMN=VALUE")
@@ -222,13 +202,7 @@ def selection(which: str, *, source: str) -> tuple[str, str]:
 
 
 def rows_with(value: str, cells: Sequence[str], *, source: str) -> list[int]:
-    """Return the places of a value in a column.
-
-    Raises
-    ------
-    InputError
-        It is not there.
-    """
+    """Return the places of a value in a column, or refuse one that is not there."""
     rows = [k for k, cell in enumerate(cells) if cell == value]
     if not rows:
         raise InputError(

@@ -38,14 +38,9 @@ class Rise(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MeasuredFlow:
-    """Rows of a measured flow curve, each array (n,).
+    """Rows of a measured flow curve: plastic strain, true stress [Pa], rate [1/s], temperature [K].
 
-    Parameters
-    ----------
-    strain, stress
-        Plastic strain [-], true stress [Pa].
-    rate, temperature
-        Strain rate [1/s] and temperature [K], nan where the table does not say them.
+    Each has shape (n,); rate and temperature are nan where the table does not say them.
     """
 
     strain: Array
@@ -122,10 +117,7 @@ class MeasuredFlow:
 def read_flow_curve(path: Path) -> MeasuredFlow:
     """Read a flow curve: `plastic_strain`, `true_stress_Pa`, optional rate and temperature.
 
-    Raises
-    ------
-    InputErrors
-        Every mistake, a line each, with its row.
+    Every mistake is a line with its row.
     """
     problems = Problems(str(path))
     table = read_text_table(path, COLUMNS, problems)

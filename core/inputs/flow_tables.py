@@ -32,13 +32,7 @@ class _LawTable(InputTable):
     def numbers(
         self, needed: Mapping[str, tuple[str, ...]], *, key: str, source: str
     ) -> list[float]:
-        """Return the law's numbers in its order.
-
-        Raises
-        ------
-        InputError
-            One is missing, or one of another law is there.
-        """
+        """Return the law's numbers in its order; refuse a missing one, and one of another law."""
         law = self.__dict__["law"]
         given = {k: v for k, v in self.__dict__.items() if k != "law" and v is not None}
         for name in needed[law]:

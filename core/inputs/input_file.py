@@ -10,21 +10,10 @@ from ..errors import InputError
 
 
 def checked_file(path: Path, *, most: int, allowed: str) -> Path:
-    """Return a path that stands for an ordinary file of a bearable size.
+    """Return a path that stands for an ordinary file of at most so many bytes.
 
-    Parameters
-    ----------
-    path
-        The file; a pipe or a device would be waited for without end.
-    most
-        Largest size [bytes].
-    allowed
-        What the file should be, for the error.
-
-    Raises
-    ------
-    InputError
-        It is missing, is no ordinary file, or is too large.
+    Refused where it is missing, too large, or a pipe or device, which would be waited for without
+    end; `allowed` says what it should be.
     """
     try:
         about = path.stat()
@@ -45,13 +34,7 @@ def checked_file(path: Path, *, most: int, allowed: str) -> Path:
 
 
 def path_of(given: object, *, key: str, allowed: str) -> Path:
-    """Return what a program gave as a path.
-
-    Raises
-    ------
-    InputError
-        It is none.
-    """
+    """Return what a program gave as a path, or refuse what is none."""
     if not isinstance(given, str | os.PathLike):
         raise InputError(repr(given), key=key, allowed=allowed)
     return Path(given)
@@ -60,15 +43,7 @@ def path_of(given: object, *, key: str, allowed: str) -> Path:
 def file_beside(source: str | Path, name: str, *, key: str) -> Path:
     """Return the file that a key of another one names, from that one's folder.
 
-    Parameters
-    ----------
-    source, name, key
-        The other file, what it says, and where.
-
-    Raises
-    ------
-    InputError
-        There is none.
+    Refused if missing.
     """
     path = Path(source).parent / name
     if not os.path.exists(path):
@@ -80,13 +55,7 @@ def file_beside(source: str | Path, name: str, *, key: str) -> Path:
 
 
 def read_bytes(path: Path, *, most: int, allowed: str) -> bytes:
-    """Return the content of an ordinary file of a bearable size.
-
-    Raises
-    ------
-    InputError
-        As `checked_file`, or it may not be read.
-    """
+    """Return the content of an ordinary file of a bearable size, as `checked_file`."""
     checked_file(path, most=most, allowed=allowed)
     try:
         with path.open("rb") as stream:

@@ -11,22 +11,7 @@ from .input_file import read_bytes
 
 
 def read_json(path: Path, *, most: int, allowed: str) -> Any:
-    """Return the content of a JSON file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    most
-        Largest size [bytes].
-    allowed
-        What the file should be, for the error.
-
-    Raises
-    ------
-    InputError
-        The file is missing, unreadable, too large or not JSON.
-    """
+    """Return the content of a JSON file, checked as `checked_file` does."""
     content = read_bytes(path, most=most, allowed=allowed)
     try:
         return json.loads(content.decode())

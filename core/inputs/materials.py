@@ -87,13 +87,7 @@ def _entry(row: Mapping[str, str], laws: Mapping[str, Mapping[str, Any]]) -> Ent
 
 
 def entry_named(name: str) -> Entry:
-    """Return an entry.
-
-    Raises
-    ------
-    InputError
-        No entry has this name; the nearest ones are told.
-    """
+    """Return an entry, or refuse a name and tell the nearest."""
     known = materials()
     if not isinstance(name, str):
         raise InputError(repr(name), key="material", allowed="a name of dentscope materials")
@@ -137,14 +131,8 @@ class Mistyped(str):
 def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
     """Return a body's table with what it leaves out taken from the material that it names.
 
-    A stated strength or hardness keeps both of the table's out: one follows from the other.
-
-    Parameters
-    ----------
-    given
-        The table as the file has it.
-    known
-        Keys that this table may hold.
+    `known` are keys that it may hold. A stated strength or hardness keeps both of the table's out:
+    one follows from the other.
     """
     name = given.get("material")
     if given.get("rigid") or not isinstance(name, str):

@@ -74,19 +74,9 @@ class RigNumbers:
         return {k.removeprefix(table): x for k, x in self.of.items() if k.startswith(table)}
 
     def material(self, body: str, *, source: str = "") -> Material:
-        """Return the metal of a body.
+        """Return the metal of a body by its table; `source` is the file that errors name.
 
-        Parameters
-        ----------
-        body
-            Its table.
-        source
-            File that an error names.
-
-        Raises
-        ------
-        InputError
-            The modulus or Poisson's ratio is missing, or a number is outside its range.
+        Refused where modulus or Poisson's ratio is missing, or a number is outside its range.
         """
         name = self.metals[body]
         if body in self.rigid:

@@ -20,14 +20,9 @@ from ..rig import StrikerTable, TargetTable, value_of
 
 @dataclass(frozen=True, slots=True)
 class StruckSphere:
-    """A sphere that is struck.
+    """A sphere that is struck: its radius [m], negative for a concave seat, and its mass [kg].
 
-    Parameters
-    ----------
-    radius
-        [m]; negative for a concave seat.
-    mass
-        [kg]; infinite where it is held.
+    The mass is infinite where it is held.
     """
 
     radius: float
@@ -41,10 +36,7 @@ class StruckSphere:
     def equivalent(self, radius: float) -> float:
         """Return R of the sphere on a flat that answers for both, 1/R = 1/R_1 + 1/R_2 [m].
 
-        Raises
-        ------
-        InputError
-            The seat is no wider than the striking sphere of radius R_1.
+        A seat no wider than the striking sphere of radius R_1 is refused.
         """
         curvature = 1.0 / radius + 1.0 / self.radius
         if not curvature > 0.0:
@@ -70,12 +62,8 @@ class StruckSphere:
     def own_rebound(self, relative: Array, speed: Array | float, reduced: Array | float) -> Array:
         """Return the striker's rebound from the relative one, both against the approach [m/s].
 
-        Parameters
-        ----------
-        relative, speed
-            (...) normal speeds of the striker to this one, after and before [m/s].
-        reduced
-            Mass of `reduced` [kg]: what it gives this one goes off with it.
+        `relative` and `speed`, (...), are normal speeds of the striker to this one, after and
+        before. What the mass `reduced` gives this one goes off with it.
         """
         return np.asarray(relative - reduced / self.mass * (speed + relative))
 
@@ -85,12 +73,8 @@ class StruckSphere:
     ) -> Array:  # fmt: skip
         """Return the striking sphere's spin after, from that of the equivalent one [rad/s].
 
-        Parameters
-        ----------
-        relative, approach
-            (...) spins of the equivalent sphere after and before, which turns its surface as fast.
-        R, reduced
-            Of `equivalent` [m] and `reduced` [kg].
+        `relative` and `approach`, (...), are spins of the equivalent sphere after and before, which
+        turns its surface as fast; R is that of `equivalent`.
         """
         # friction's impulse P turns a solid sphere by P/(0.4 m R), the equivalent one by its own
         share = 1.0 - reduced / self.mass
@@ -112,15 +96,7 @@ def struck_sphere(target: TargetTable) -> StruckSphere | None:
 def second_sphere_mistakes(
     target: TargetTable, strikers: Mapping[str, StrikerTable], *, source: str
 ) -> Iterator[InputError]:
-    """Yield what a second sphere needs, and what only a flat has.
-
-    Parameters
-    ----------
-    target, strikers
-        What is struck, and what strikes it, by name.
-    source
-        File that the lines name.
-    """
+    """Yield what a second sphere needs, and what only a flat has, as lines that name `source`."""
     two = target.shape == "sphere"
     free = two and target.mass_kg is not None
     flat_only = 'with target.shape = "sphere"'

@@ -85,13 +85,7 @@ KINDS = tuple(_TEXTS)
 
 
 def template(kind: str) -> str:
-    """Return the text of a set-up.
-
-    Raises
-    ------
-    InputError
-        There is none of this kind.
-    """
+    """Return the text of a set-up, or refuse a kind that there is not."""
     if kind not in _TEXTS:
         raise InputError(
             f"no set-up {kind!r}", source="command line", key="--new", allowed=", ".join(KINDS)
@@ -171,13 +165,7 @@ sliding_length_m = 1650e-6      # path of the touching point, not a scar less it
 
 
 def write_new(text: str, path: Path, *, command: str) -> str:
-    """Write a file to start from; return what to do with it.
-
-    Raises
-    ------
-    InputError
-        A file of this name exists, or its folder cannot be written.
-    """
+    """Write a file to start from; return what to do with it. One that exists is refused."""
     if path.exists():
         raise InputError("exists", source=str(path), allowed="a name that is free")
     write_file(path, text.replace("{name}", path.name))

@@ -68,13 +68,7 @@ Listed = Field(strict=False)
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Return the content of a TOML file.
-
-    Raises
-    ------
-    InputError
-        The file is missing, unreadable or not TOML.
-    """
+    """Return the content of a TOML file; refused if missing, unreadable or not TOML."""
     content = read_bytes(path, most=_TOML_BYTES, allowed="an existing TOML file")
     tables = len(re.findall(rb"^[ \t]*\[", content, re.MULTILINE))
     if tables > _TOML_TABLES:
@@ -110,13 +104,7 @@ def _depth_at_most(most: int, content: Any) -> bool:
 
 
 def read_model(path: Path, model: type[Model]) -> Model:
-    """Read a TOML file into a pydantic model; all mistakes come at once.
-
-    Raises
-    ------
-    InputErrors
-        One line for each mistake: file, key, value, what is allowed.
-    """
+    """Read a TOML file into a pydantic model; all mistakes come at once, a line each."""
     return parse_model(read_toml(path), model, source=str(path))
 
 

@@ -95,10 +95,7 @@ def _load_elsewhere(module: str, settings: str) -> bool:
 def die_with(parent: int) -> None:
     """End this process when the one that started it is gone: a killed run leaves nothing behind.
 
-    Parameters
-    ----------
-    parent
-        Its number, as `os.getppid()` gives it.
+    `parent` is what `os.getppid()` gives it.
     """
 
     def watch() -> None:

@@ -31,19 +31,8 @@ Result = TypeVar("Result")
 def confined(work: Callable[..., Result], *arguments: Any, source: str) -> Result:
     """Do something in a child process within limits of memory and time.
 
-    Parameters
-    ----------
-    work
-        A function at the top of a module of this package.
-    arguments
-        What it is given; they and the result are pickled.
-    source
-        The file, for errors.
-
-    Raises
-    ------
-    InputError
-        What the work raised, or that it went beyond a limit.
+    `work` is a function at the top of a module of this package; arguments and result are pickled.
+    What it raises, or that it went beyond a limit, is an InputError that names `source`.
     """
     order = pickle.dumps((work.__module__, work.__qualname__, arguments))
     command = python_command("-m", __name__)

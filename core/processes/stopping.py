@@ -29,12 +29,9 @@ _DEFAULT: dict[int, Any] = {
 
 
 class Stopped(BaseException):
-    """The user or the system asks the command to end; no library takes it for a Ctrl-C of its own.
+    """The user or the system asks the command to end, by a signal's number.
 
-    Parameters
-    ----------
-    number
-        Of the signal.
+    No library takes it for a Ctrl-C of its own.
     """
 
     def __init__(self, number: int = signal.SIGINT) -> None:

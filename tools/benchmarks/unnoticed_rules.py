@@ -53,8 +53,8 @@ def tests_under(stage: str, name: str, factor: float, tests: list[str]) -> int:
     else:
         # changed while the register is made: some modules take a number's value as they are loaded
         told, plain = meaning(stage, name), rules.rule
-        rules.rule = lambda value, said, source: plain(
-            changed(value, factor) if said == told else value, said, source
+        rules.rule = lambda value, said, *source: plain(
+            changed(value, factor) if said == told else value, said, *source
         )
     return int(pytest.main(["-q", "-x", "-p", "no:cacheprovider", "--no-header", *tests]))
 
