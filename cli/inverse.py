@@ -8,9 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..core.errors import InputError
 from ..core.inputs.templates import INVERSE, write_new
-from . import studies
-from .laws import laws_named
 from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import show_table
@@ -18,13 +17,7 @@ from .shared.terminal import show_table
 
 def inverse(
     context: typer.Context,
-    file: Annotated[
-        Path | None, typer.Argument(help="TOML with [striker] and [[trial]]; default: chapter 5.")
-    ] = None,
-    law: Annotated[
-        list[str] | None,
-        typer.Option("--law", help="Without a file: laws for tables 5.2-5.4; repeat for several."),
-    ] = None,
+    file: Annotated[Path | None, typer.Argument(help="TOML with [striker] and [[trial]].")] = None,
     new: Annotated[
         bool, typer.Option("--new", help="Write a file to start from, inverse.toml by default.")
     ] = False,
@@ -34,26 +27,23 @@ def inverse(
 ) -> None:
     """Infer duration and mean force from depth, sliding length and restitution (chapter 5)."""
     if new:
-        refuse_beside(context, "beside --new", "law", "out")
+        refuse_beside(context, "beside --new", "out")
         typer.echo(write_new(INVERSE, file or Path("inverse.toml"), command="inverse"))
         return
     if file is None:
-        studies.needed_for("`dentscope inverse` without a file")
-        laws_named(law or [])
-    else:
-        refuse_beside(context, "with a file: what is inferred needs no contact law", "law")
-        from ..core.inputs.toml_input import read_toml
+        raise InputError(
+            "no file", source="command line", key="FILE",
+            allowed="a TOML with [striker] and [[trial]]; --new writes one",
+        )  # fmt: skip
+    from ..core.inputs.toml_input import read_toml
 
-        read_toml(file)  # what is no TOML is told before the simulation is loaded
+    read_toml(file)  # what is no TOML is told before the simulation is loaded
     from ..dynamics.files.inverse_file import read_inverse
     from ..dynamics.files.tables import write_csv
     from ..dynamics.told.draw import draw_alpha
 
     console = new_console()
-    if file is None:
-        rod, rows = studies.module("chapter5").thesis_rows()
-    else:
-        rod, rows = read_inverse(file)
+    rod, rows = read_inverse(file)
     head, cells = _shown(rows)
     show_table(
         console, head, cells,
@@ -65,11 +55,9 @@ def inverse(
     for row in rows:
         for line in row.inferred.objections:
             console.print(f"  {row.name}: {line}", soft_wrap=True)
-    stem = "chapter5" if file is None else f"{file.stem}-inverse"
+    stem = f"{file.stem}-inverse"
     write_csv(out / f"{stem}.csv", [_csv_row(row) for row in rows])
     draw_alpha(rod, (0.0, 0.1, 0.2, 0.5, 1.0), out / f"{stem}-alpha.png")
-    if file is None:
-        studies.module("chapter5").tables(console, law or ["ghaednia"])
     console.print(f"written: {out / f'{stem}.csv'}, {out / f'{stem}-alpha.png'}", soft_wrap=True)
 
 

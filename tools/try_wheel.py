@@ -86,7 +86,6 @@ IMPACT = (
     Use("impact {data}/../examples/impact_rod.toml --out impact", "energy balance"),
     Use("impact", "checkout", 2),
     Use("inverse {data}/../examples/inverse_scar.toml --out inverse", "1.384"),
-    Use("inverse", "checkout", 2),
     Use("inverse --new scar.toml", "dentscope inverse scar.toml"),
     Use("recordings list", "kharaz-2001-oblique"),
     Use("recordings check kharaz-2001-oblique", "12 trials"),

@@ -7,18 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
-from ....core.inputs.toml_input import read_toml
-from ....dynamics.integrate import Trace, traced
 from ....dynamics.inverse import alpha_curve
-from ....models.base import ContactLaw
-from ...plot import Entry, Picture, finish, laws, look, sheet
+from ...plot import Entry, Picture, finish, sheet
 from .. import chapter5
-from ..chapter3 import REFERENCE
-from . import chapter4, scars, tables
+from . import chapter4, tables
 from .claims import judged
-from .thesis_rod import scene_at
-
-Histories = list[tuple[ContactLaw, Trace]]
 
 
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
@@ -28,22 +21,8 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
         tables.legend(chapter4.NINE),
         *chapter4.pictures(),
         _alpha(),
-        *scars.pictures(_experiments(), chapter5.thesis_rod().tip_radius),
-        _pattern(),
         *(tables.comparison(f"5.{k}", angle) for k, angle in ((2, 20.0), (3, 45.0), (4, 70.0))),
     ]  # fmt: skip
-
-
-def _experiments() -> dict[float, Histories]:
-    """Chapter 5's three impacts with the laws whose scars are drawn."""
-    found = {}
-    for e in read_toml(REFERENCE / "chapter45.toml")["experiment"]:
-        angle = float(e["angle_deg"])
-        found[angle] = [
-            (law, traced(scene_at(law, angle, -e["approach_m_s"], e["friction"]), points=300))
-            for law in laws("ghaednia", "kogut-komvopoulos", "brake-2015", "fitted")
-        ]  # fmt: skip
-    return found
 
 
 def _alpha() -> Picture:
@@ -72,20 +51,3 @@ def _alpha() -> Picture:
         ("with 1 it always sticks", bool(np.all(sticks[1.0]))),
     )  # fmt: skip
     return Picture("5.3", "Sliding per normal travel", made, note)
-
-
-def _pattern() -> Picture:
-    """Depth of the tip along its path on the flat: the predicted scar at 20 degrees."""
-    made, (axis,) = sheet()
-    told = []
-    for law in laws("ghaednia", "kogut-komvopoulos", "brake-2015", "fitted"):
-        trace = traced(scene_at(law, 20.0, 1.41, 0.20), points=300)
-        x, y = trace.column("slip_m"), trace.column("tip_height_m")
-        axis.plot(1e6 * x, 1e6 * np.minimum(y, 0.0), **look(law))
-        told.append(f"{law.name} {1e6 * trace.impact.sliding_length_m:.0f}")
-    finish(axis, x="path of the tip [um]", y="height of the tip [um]")
-    note = (
-        f"Sliding length in one contact [um]: {', '.join(told)}; measured 1400. One contact of a "
-        "rigid rod is an order of magnitude too short: the rod vibrates and touches several times."
-    )
-    return Picture("5.7", "Predicted path of the tip, 20 degrees", made, note)

@@ -40,16 +40,16 @@ The line under each figure says whether it agrees, by how much it differs, and w
 with the picture. A law's name is that of `dentscope laws`; in every figure it keeps its colour
 (table 4.2). `make figures` draws all of it again, `dentscope figures --chapter 2` one chapter.
 
-## Not drawn, or without the thesis's own data
+## Not drawn
 
 """
 
 NOT_REDRAWN = {
     "1.1, 1.4, 3.1, 4.1-4.3, 5.1, 5.2": "sketches, not drawn again",
     "3.2-3.6": "photographs, films and scans, which are not published",
-    "5.4-5.6": "the measured scars are not published; predicted ones are drawn",
+    "5.4-5.7": "scars and path, whose measured ones are not published; see tables 5.2-5.4",
 }
-"""Figures of the thesis that are not drawn, or without its own data, with the reason."""
+"""Figures of the thesis that are not drawn, with the reason."""
 
 
 def stored_cases(root: Path) -> list[CaseRecord]:
@@ -117,7 +117,7 @@ def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
 
 
 def _index(folder: Path) -> str:
-    """Contents of all pages that there are, and what is not drawn, or without the thesis's data."""
+    """Contents of all pages that there are, and what is not drawn."""
     parts = [_HEAD]
     for chapter in CHAPTERS:
         page = folder / page_of(chapter)

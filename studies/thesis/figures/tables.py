@@ -167,8 +167,9 @@ def _said(experiment: Mapping[str, Any], scar: Inferred, struck: Sequence[Impact
 
 
 _REMARK = {
-    "5.2": "The measured dent is a third of any predicted, the sliding length twenty times. In all "
-    "three tables T of the simulated rows is the return to the undisturbed surface, their force "
+    "5.2": "The measured dent is a third of any predicted, the sliding length twenty times: "
+    "one contact of a rigid rod is far too short, it vibrates and touches again. In all three "
+    "tables T of the simulated rows is the return to the undisturbed surface, their force "
     f"belongs to the contact alone, and Brake's law has {_MEASURED_H:g} kgf/mm^2 and n = "
     f"{_MEASURED_N:g}, at which the printed rows come out.",
     "5.3": "Two printed rows contradict others: see the errata.",

@@ -122,7 +122,7 @@ inverse broken.toml
 inverse empty.toml
 inverse ball.toml
 inverse rod.toml --out words.txt
-inverse --law nonsense
+inverse
 inverse --new rod.toml
 laws nonsense
 laws show

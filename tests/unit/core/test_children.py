@@ -100,9 +100,8 @@ reduce scan pulse.csv --unit um --step-m 1e-6 --out r4|reduce tip pulse.csv --ou
 reduce mocap pulse.csv --shape sphere --out r6|diagnose nosuch|metal nosuch|fit nosuch
 figures --chapter 9|verify --list|campaign designs|campaign run --design nosuch|campaign status
 campaign show nosuch|campaign refine nosuch|campaign export|campaign publish --design nosuch
-campaign repair|campaign reproduction --data nosuch
-campaign reproduction --data nosuch|proof run --list nosuch|proof score --list nosuch
-proof page nosuch|proof sample s --kind nosuch|proof peers nosuch
+campaign repair|campaign reproduction --data nosuch|proof run --list nosuch
+proof score --list nosuch|proof page nosuch|proof sample s --kind nosuch|proof peers nosuch
 proof laws nosuch|proof interventions nosuch|challenge get pulse.csv
 challenge score nosuch pulse.csv|challenge ask nosuch one pulse.csv
 """.strip()

@@ -82,13 +82,6 @@ def test_file_and_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert told in capsys.readouterr().err
 
 
-def test_thesis_tables_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["inverse", "--out", str(tmp_path)]) == 0
-    printed = capsys.readouterr().out
-    assert "0.567 kg" in printed
-    assert "table 5.4" in printed
-
-
 def test_chapter_3_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["impact", "--law", "hertz", "--law", "ghaednia", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out

@@ -27,12 +27,16 @@ from dentscope.studies.verification.runner import kept_result
 
 
 @pytest.mark.parametrize(
-    ("value", "low", "high", "met"),
-    [(0.2, None, 0.3, True), (0.4, None, 0.3, False), (-0.4, -0.3, 0.3, False),
-     (math.nan, None, 0.3, False), (5.0, 5.0, None, True), (1.0, None, None, None)],
+    ("value", "low", "high", "met", "used"),
+    [(0.5, None, 2.0, True, 0.25), (3.0, None, 2.0, False, math.inf),
+     (1.5, 0.0, 2.0, True, 0.5), (-0.4, -0.3, 0.3, False, math.inf),
+     (math.nan, None, 0.3, False, math.inf), (2.0, 1.0, None, True, 0.5),
+     (9.0, None, None, None, -1.0)],
 )  # fmt: skip
-def test_a_mark_is_met_or_missed(value, low, high, met):
-    assert Measurement("x", value, "", low, high).met is met
+def test_a_mark_is_met_or_missed_and_used_to_a_part(value, low, high, met, used):
+    found = Measurement("x", value, "", low, high)
+    assert found.met is met
+    assert found.used == used
 
 
 def result(name="patch", value=0.1):
@@ -106,15 +110,6 @@ def test_a_report_is_renewed_check_by_check(tmp_path):
     assert "| 1 of 1, quick | x: 0.1 % (" in text
     rows = (tmp_path / "b" / "rows.md").read_text()
     assert rows.count("| x | 0.") == 2
-
-
-@pytest.mark.parametrize(
-    ("value", "low", "high", "used"),
-    [(0.5, None, 2.0, 0.25), (2.0, 1.0, None, 0.5), (1.5, 0.0, 2.0, 0.5),
-     (3.0, None, 2.0, math.inf), (9.0, None, None, -1.0)],
-)  # fmt: skip
-def test_how_much_of_a_mark_is_used(value, low, high, used):
-    assert Measurement("x", value, low=low, high=high).used == used
 
 
 def test_the_page_shows_the_number_nearest_to_its_mark(tmp_path):
