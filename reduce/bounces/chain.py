@@ -25,21 +25,11 @@ _FACTORS = np.exp(np.arange(math.log(0.1), 0.0, 0.08))
 
 @dataclass(frozen=True)
 class Chain:
-    """Instants of one run.
+    """Instants of one run: `times` (n,) [s], and the indices of those that belong to it, (k,).
 
-    Parameters
-    ----------
-    times
-        (n,), all instants [s].
-    kept
-        Indices of those that belong to the run, (k,).
-    single
-        Whether the gap after each but the last is one flight that can be used (not two with a
-        missed contact between, nor one that strays), k - 1 entries.
-    factor
-        Typical ratio of an interval to the one before.
-    notes
-        What was left out.
+    `single` says whether the gap after each but the last is one flight that can be used (not two
+    with a missed contact between, nor one that strays); `factor` is the typical ratio of an
+    interval to the one before; `notes` tell what was left out.
     """
 
     times: Array

@@ -79,16 +79,8 @@ def find_bounces(
 ) -> Bounced | None:
     """Return every contact that has a usable flight on both sides, or None if there is none.
 
-    Parameters
-    ----------
-    track
-        The point that is followed.
-    ball
-        Gravity, and the drag as far as it is known.
-    metres
-        Size of the track's unit [m], if it is known otherwise than by the fall.
-    contact
-        Duration of a contact [s], if it is known.
+    `metres` is the size of the track's unit [m], if it is known otherwise than by the fall;
+    `contact` the duration of a contact [s], if it is known.
     """
     chosen = on_the_body(track)
     body = replace(track, time=track.time[chosen], height=track.height[chosen])

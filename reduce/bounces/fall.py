@@ -63,18 +63,10 @@ class Fall:
 
 @dataclass(frozen=True)
 class Ball:
-    """A sphere in a fluid; without mass or diameter its drag and buoyancy are not known.
+    """A sphere of mass [kg] and diameter [m] in a fluid under gravity [m/s²].
 
-    Parameters
-    ----------
-    gravity
-        [m/s²].
-    mass, diameter
-        [kg, m], or None.
-    fluid
-        What it flies through.
-    coefficient
-        Of drag; None takes the standard curve of smooth spheres.
+    Without mass or diameter its drag and buoyancy are not known; without a coefficient the drag is
+    that of the standard curve of smooth spheres.
     """
 
     gravity: float

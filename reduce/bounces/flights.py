@@ -56,16 +56,8 @@ def side(
 ) -> Piece | None:
     """Return the flight next to sample `contact`, towards sample `end`; None where there is none.
 
-    Parameters
-    ----------
-    track
-        The heights.
-    contact, end
-        Turning point, and the last sample to look at on its earlier or later side.
-    stage, view
-        What the flights share; without a view each is a parabola of its own.
-    off
-        Samples next to the turning point that belong to the contact.
+    Without a view it is a parabola of its own. `off` samples next to the turning point belong to
+    the contact.
     """
     step = 1 if end > contact else -1
     order = np.arange(contact + step, end + step, step)

@@ -68,22 +68,10 @@ class JointSolution:
 def fit_together(
     track: Track, pieces: Sequence[Piece], stage: Stage, view: View, before: Before
 ) -> tuple[list[Piece], list[JointSolution]]:
-    """Fit all pieces with one view.
+    """Fit all pieces with one view, beginning with `view` and what is known of fall and drag.
 
-    Parameters
-    ----------
-    track, pieces, stage
-        Heights, flights, ranges.
-    view
-        To begin with.
-    before
-        What is known of fall and drag.
-
-    Returns
-    -------
-    tuple
-        The pieces without their strays and with the spread of a sample; the fits, the weights of
-        which add up to one, the likeliest first.
+    Returns the pieces without their strays and with the spread of a sample, and the fits, the
+    weights of which add up to one, the likeliest first.
     """
     pieces = list(pieces)
     x = np.concatenate([view, *(p.launch for p in pieces)])

@@ -26,16 +26,8 @@ def sides_of(
 ) -> Sides:  # fmt: skip
     """Return the flights before and after each turning point.
 
-    Parameters
-    ----------
-    body, contacts, stage
-        Heights, turning points, ranges.
-    view
-        That all flights share, if it is known.
-    held
-        Samples before and after each turning point that the contact has moved.
-    known
-        Whether there is a flight, for each; all are looked for by default.
+    `held` are samples before and after each that the contact has moved; `known` says for each
+    whether there is a flight, else all are looked for.
     """
     edges = [-1, *contacts, body.time.size]
     moved = [(0, 0), *(held or [(0, 0)] * len(contacts)), (0, 0)]

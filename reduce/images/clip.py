@@ -61,23 +61,11 @@ def read_clip(
 ) -> Clip:
     """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
 
-    Parameters
-    ----------
-    path
-        File or folder; pictures are taken in the natural order of their names.
-    channel
-        One of `CHANNELS`.
-    down
-        Where gravity points in the picture as a player shows it, one of `DOWN`.
-    first, last
-        Range of frames, both included.
-    crop
-        Rows and columns to keep (top, bottom, left, right) after turning, the ends excluded.
-
-    Raises
-    ------
-    InputError
-        The file cannot be decoded, holds too few frames, or is too large for the memory.
+    Pictures are taken in the natural order of their names. `channel` is one of `CHANNELS`, `down`,
+    where gravity points as a player shows it, of `DOWN`; `first` and `last` frame are both
+    included; `crop` keeps rows and columns (top, bottom, left, right) after turning, the ends
+    excluded. Refused where it cannot be decoded, holds too few frames, or is too large for the
+    memory.
     """
     if not path.exists():
         raise InputError(

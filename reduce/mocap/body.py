@@ -98,25 +98,10 @@ def make_body(
     file: Path | None,
     axis: tuple[str, str] | None,
 ) -> tuple[Body, tuple[str, ...]]:
-    """Return the body and remarks about it.
+    """Return the body and remarks about it; lengths [m].
 
-    Parameters
-    ----------
-    poses, markers
-        Mean shape and the names of its markers.
-    shape
-        `"rod"`, `"sphere"` or `"body"`.
-    tip_radius, length, radius
-        Of the striker [m]; `length` 0 for all but rods, `radius` of the rod, default the tip's.
-    file
-        A `BodyFile`, or None: then spin shows the centre of mass.
-    axis
-        Two markers on a line along the rod, if no file tells the axis.
-
-    Raises
-    ------
-    InputError
-        A rod without an axis, or a file that does not fit the markers.
+    Without a `BodyFile` spin shows the centre of mass, and `axis` names two markers on a line along
+    the rod. A rod without an axis, and a file that does not fit the markers, are refused.
     """
     across = radius if radius is not None else tip_radius
     given, way = None, np.zeros(3)

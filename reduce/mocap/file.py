@@ -92,28 +92,13 @@ def read_markers(
 ) -> Markers:
     """Read marker tracks from a C3D file, a tracker's export, or a table.
 
-    A table has names above its numbers, a column `time_s` (or `frame`, with `rate`), and three
-    columns for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`, `A:z`. An
-    empty cell, or a marker at exactly (0, 0, 0), was not seen. A table of poses has columns x, y, z
-    of a place on the body and qw, qx, qy, qz of its rotation (scalar first) instead.
-
-    Parameters
-    ----------
-    path
-        The file.
-    unit
-        One of `UNITS`; None takes what the file says.
-    rate
-        Frames per second [1/s]; None takes what the file says.
-    select
-        `COLUMN=VALUE`: only these rows of a table.
-    points
-        Places on the body [m], by name, that stand for markers in a table of poses.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or does not say its unit or its time.
+    A table has names above its numbers, a column `time_s` (or `frame`, with `rate` [1/s]), and
+    three columns for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`,
+    `A:z`. An empty cell, or a marker at exactly (0, 0, 0), was not seen. A table of poses has
+    columns x, y, z of a place on the body and qw, qx, qy, qz of its rotation (scalar first)
+    instead; `points`, places on the body [m] by name, then stand for markers. `unit` and `rate`
+    count before those of the file, and `select`, `COLUMN=VALUE`, picks rows. A file that does not
+    say its unit or its time is refused.
     """
     if path.suffix.lower() == ".c3d":
         markers = _c3d(path, unit, rate)

@@ -22,13 +22,7 @@ from .rigid import rigid_poses
 
 
 def reduce(path: Path, options: MocapOptions) -> Reduced:
-    """Fit a rigid body to the markers and read its motion before and after each impact.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or shows no body or no impact.
-    """
+    """Fit a rigid body to the markers and read its motion before and after each impact."""
     places = read_model(Path(options.body), BodyFile).markers if options.body else {}
     markers = read_markers(
         path, unit=None if options.unit == "file" else options.unit, rate=options.frame_rate_hz,

@@ -127,10 +127,7 @@ class MocapReduction:
 def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) -> MocapReduction:
     """Return every impact between two free flights of a body, in the axes of its mean shape.
 
-    Raises
-    ------
-    InputError
-        No flight, or no impact with a flight on both sides.
+    A body without one, with a flight on both sides, is refused.
     """
     flights = find_flights(poses, -scene.gravity * scene.up, body.centre)
     if flights is None or len(flights.spans) < 2:

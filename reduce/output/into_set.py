@@ -58,25 +58,10 @@ def store(
     options: Mapping[str, Any],
     setup: SetFile | None = None,
 ) -> Stored:
-    """Write a reduction into a set, new or existing.
+    """Write a reduction into a set, new or existing, in a row with conditions that the file lacks.
 
-    Parameters
-    ----------
-    reduced
-        What was measured.
-    folder
-        Of the set.
-    row
-        Conditions that the raw file does not tell.
-    kind, options
-        How it was reduced, for the record.
-    setup
-        set.toml of a new set; without it a new set gets one to fill in.
-
-    Raises
-    ------
-    InputError
-        A condition is missing or the set would not be sound.
+    `kind` and `options` are kept in the record. A new set gets `setup`, or else one to fill in. A
+    set that would not be sound is refused.
     """
     # another reduction may write the same set: what it added must not be lost
     with locked(folder):
@@ -120,22 +105,9 @@ def store_each(
 ) -> tuple[list[Stored], list[str]]:
     """Write many raw files into one set, those that show nothing left out.
 
-    Parameters
-    ----------
-    items
-        Name of each raw file, and what reduces it: the reduction, the conditions that the file
-        does not tell, the options that were used.
-    folder
-        Of the set.
-    kind
-        How all of them are reduced.
-    setup
-        set.toml of the set if it is new.
-
-    Returns
-    -------
-    tuple
-        What was written, and a line for each raw file that was left out.
+    An item is the name of a raw file and what reduces it: the reduction, the conditions that the
+    file does not tell, the options that were used. Returns what was written, and a line for each
+    raw file that was left out.
     """
     written: list[Stored] = []
     left_out = []

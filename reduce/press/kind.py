@@ -14,13 +14,7 @@ from .reduction import reduce_press
 
 
 def reduce(path: Path, options: PressOptions) -> Reduced:
-    """Measure the presses of a record.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or shows no whole press.
-    """
+    """Measure the presses of a record."""
     record = read_press(path, options)
     given, std = options.machine_compliance_m_N, options.machine_compliance_m_N_std
     with drawn_if_refused(1e6 * record.depth, record.load, axes=("depth [um]", "load [N]")):

@@ -79,24 +79,11 @@ def reduce_scan(
     height_scale: Measured = UNITY,
     blur: Measured = ZERO,
 ) -> Crater:
-    """Measure the deepest crater of a scan.
+    """Measure the deepest crater of a scan, or refuse one that stands out of no roughness.
 
-    Parameters
-    ----------
-    scan
-        Heights on a grid.
-    level
-        Shape of the undisturbed surface, one of `scan_level.LEVELS`.
-    height_scale
-        Calibration of the instrument's heights: true over shown.
-    blur
-        Standard deviation of the instrument's lateral blur [m]: it lifts a floor of Laplacian q
-        by q blur²/2, which is taken off.
-
-    Raises
-    ------
-    InputError
-        There is no crater that stands out of the roughness, or no surface left around it.
+    `level` is the shape of the undisturbed surface, one of `scan_level.LEVELS`; `height_scale` true
+    over shown heights; `blur` the standard deviation of the lateral blur [m]: it lifts a floor of
+    Laplacian q by q blur²/2, which is taken off.
     """
     shown = levelled(scan, level=level)
     direction, half_width = _shape(shown)

@@ -51,21 +51,9 @@ def read_scan(
 ) -> Scan:
     """Read any file that SurfaceTopography knows, or comma-separated numbers.
 
-    Parameters
-    ----------
-    path
-        The file.
-    unit, height_unit
-        Units of length along the surface and of the heights, of `units.LENGTH`, for files that
-        name none or a wrong one; `height_unit` defaults to `unit`.
-    step
-        Distance between neighbouring points [m], for files whose header is wrong or silent.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, has no heights, is a line, or does not say its unit or the
-        distance of its points.
+    Units of length along the surface and of the heights (by default the same), of `units.LENGTH`,
+    and the distance of neighbouring points [m] are for files that name none or a wrong one. A line,
+    and a file that does not say them, are refused.
     """
     found = _text(path) if path.suffix.lower() == ".csv" else _known_format(path, step)
     heights = np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan)

@@ -17,13 +17,7 @@ from .picture import draw_ball, draw_crater
 
 
 def reduce(path: Path, options: ScanOptions) -> Reduced:
-    """Measure the deepest crater of a scan, or the radius of a ball.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or shows no crater or no ball.
-    """
+    """Measure the deepest crater of a scan, or the radius of a ball."""
     scan = read_scan(
         path, unit=None if options.unit == "file" else options.unit,
         height_unit=None if options.height_unit == "same" else options.height_unit,

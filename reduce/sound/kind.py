@@ -20,13 +20,7 @@ from .picture import draw_sound
 
 
 def reduce(path: Path, options: SoundOptions) -> Reduced:
-    """Time the contacts by their sound and return the restitution of each bounce.
-
-    Raises
-    ------
-    InputError
-        The file cannot be decoded, or no run of bounces is heard.
-    """
+    """Time the contacts by their sound and return the restitution of each bounce."""
     sound = _part(read_sound(path), options)
     check_level(sound)
     onsets = find_onsets(

@@ -29,19 +29,10 @@ class Onsets:
 def find_onsets(
     sound: Sound, *, least_rise_db: float, least_interval: float, lowest_hz: float
 ) -> Onsets:
-    """Return the onsets of a record.
+    """Return the onsets of a record: rises of at least so many dB, so many seconds apart.
 
-    Parameters
-    ----------
-    sound
-        The record.
-    least_rise_db
-        Rise of the energy from which on an event counts [dB].
-    least_interval
-        Shortest time between two events [s].
-    lowest_hz
-        Frequencies below are taken out first [1/s]; the filter runs forward only, so that no
-        event is heard before it happens.
+    Frequencies below `lowest_hz` are taken out first; the filter runs forward only, so that no
+    event is heard before it happens.
     """
     rate = sound.rate
     edge = min(lowest_hz, 0.2 * rate)

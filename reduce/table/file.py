@@ -103,14 +103,8 @@ class Columns:
     ) -> float:
         """Return what the numbers of a column are multiplied by; refuse a unit that is not known.
 
-        Parameters
-        ----------
-        place, quantity
-            The column, and one of `units.UNITS`.
-        given, key
-            Unit by the user, or `"file"` for what the column's name says; the option that gives it.
-        default
-            Unit where neither says one; None asks for it.
+        `quantity` is one of `units.UNITS`; `given` the unit by the user, or `"file"` for what the
+        column's name says; `key` the option that gives it; `default` counts where neither says one.
         """
         units = UNITS[quantity]
         if given != "file":

@@ -24,13 +24,8 @@ from .series import Series, series_of
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Measure the largest pulse of a record.
 
-    The impulse that is more than the weight's turns the momentum of the approach round:
-    e = (J/m - gT)/v - 1.
-
-    Raises
-    ------
-    InputError
-        Volts without a gain, or no whole pulse above the noise.
+    The impulse that is more than the weight's turns the momentum of the approach round: e = (J/m -
+    gT)/v - 1. Volts without a gain are refused.
     """
     series, source = series_of(table, options), str(path)
     scale = _scale(table, series.column, options, source)

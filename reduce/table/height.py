@@ -19,13 +19,7 @@ from .series import series_of
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    """Fit the flights of a track and read the speeds at its contacts.
-
-    Raises
-    ------
-    InputError
-        No contact with flight on both sides, or no fall by gravity.
-    """
+    """Fit the flights of a track and read the speeds at its contacts."""
     series = series_of(table, options)
     time, column = series.time, series.column
     said = table.unit(column) if options.value_unit == "file" else options.value_unit

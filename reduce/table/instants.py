@@ -15,13 +15,7 @@ from .options import TableOptions
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    """Return the bounces behind a column of instants.
-
-    Raises
-    ------
-    InputError
-        Fewer than three, or they do not increase.
-    """
+    """Return the bounces behind a column of three or more instants that increase."""
     column = table.find(options.time, key="time")
     unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
     times = table.values[:, column] * unit

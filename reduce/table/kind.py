@@ -17,13 +17,7 @@ _READ_BY = {
 
 
 def reduce(path: Path, options: TableOptions) -> Reduced:
-    """Measure what a table holds.
-
-    Raises
-    ------
-    InputError
-        The table cannot be read, or does not hold what it should.
-    """
+    """Measure what a table holds."""
     if options.holds == "trials":
         from .sheet import read_sheet
 

@@ -19,13 +19,7 @@ _LEEB_SPEED = 2.05
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    """Return a trial for each number of a column and of all after it.
-
-    Raises
-    ------
-    InputError
-        No number, or one that is not between 0 and 1000.
-    """
+    """Return a trial for each number, from 0 to 1000, of a column and of all after it."""
     first, speed = table.find(options.value, key="value"), options.approach_speed_m_s
     approach = Measured(speed or _LEEB_SPEED, 0.0)
     trials, wrong = [], []

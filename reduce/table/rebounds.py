@@ -20,15 +20,10 @@ from .picture import draw_trials
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    """Return a trial for each rebound height beside a drop height.
+    """Return a trial for each rebound height beside a drop height that is not below it.
 
     The drop heights stand in a column that is named so, or given; rebounds of the repeats in all
     columns of lengths after it. With drag a ball lands slower than it was dropped.
-
-    Raises
-    ------
-    InputError
-        No rebound heights, or one above its drop.
     """
     value = options.value if "value" in options.model_fields_set else ""
     heights, metres = _heights(table, value, options.value_unit)

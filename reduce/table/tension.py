@@ -43,24 +43,10 @@ def reduce_tension(
     """Return the flow curve, up to where a specimen begins to neck.
 
     Engineering values are made true ones, e = ln(1 + e_n), s = s_n (1 + e_n), up to the largest
-    engineering stress (Considere); the plastic strain is e - s/E. Compression counts as positive.
-
-    Parameters
-    ----------
-    strain, stress
-        (n,) in the order of loading [-, Pa].
-    strain_is
-        `"engineering"` or `"true"`; the stress likewise.
-    E
-        Modulus [Pa]; None reads it from the curve.
-    source
-        The file.
-
-    Raises
-    ------
-    InputError
-        Too few rows, no elastic part, no yield, or a modulus in another unit; `Refused` if no metal
-        rises so.
+    engineering stress (Considere); the plastic strain is e - s/E. Strain [-] and stress [Pa] have
+    shape (n,), in the order of loading; compression counts as positive. Without a modulus E [Pa] it
+    is read from the curve. Refused where there are too few rows, no elastic part or no yield, or no
+    metal rises so.
     """
     if E is not None and (unit := _other_unit(E)):
         raise InputError(f"{E:g}", key="E_Pa", allowed=f"pascals; {E:g} {unit} would be a metal's")

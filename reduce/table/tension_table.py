@@ -23,13 +23,7 @@ _AREA_UNITS = {
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    """Return the flow curve of a tension or compression test.
-
-    Raises
-    ------
-    InputError
-        Units, an area or a gauge length that are not known, or no test of a metal.
-    """
+    """Return the flow curve of a tension or compression test."""
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts, unit = _strain_unit(table, at, options), _stress_unit(table, value, options)
     with np.errstate(over="ignore"):  # what is too large is refused as that

@@ -16,13 +16,7 @@ from .reduction import TipReduction, reduce_tip
 
 
 def reduce(path: Path, options: TipOptions) -> Reduced:
-    """Fit a circle to the tip and return its radius.
-
-    Raises
-    ------
-    InputError
-        The picture cannot be read, or shows no tip.
-    """
+    """Fit a circle to the tip and return its radius."""
     picture = np.rot90(read_picture(path, channel=options.channel), DOWN[options.tip_points])
     picture = cropped(picture, crop_window(options.crop))
     found = reduce_tip(

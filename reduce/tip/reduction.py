@@ -83,25 +83,10 @@ def reduce_tip(
     diameter: Measured | None = None,
     source: str = "",
 ) -> TipReduction:
-    """Fit a circle to the tip of a body.
+    """Fit a circle to the tip of a body in grey values (rows, columns), the tip pointing down.
 
-    Parameters
-    ----------
-    picture
-        (rows, columns) grey values, the tip pointing down.
-    shape
-        `"rod"`, which enters from above, or `"sphere"`, wholly in view.
-    striker_is
-        `"dark"` on a bright ground, or `"bright"`.
-    scale
-        Size of a pixel [m].
-    diameter
-        Of the rod [m], from which the size of a pixel follows.
-
-    Raises
-    ------
-    InputError
-        No body, or too little of its edge.
+    A rod enters from above, a sphere is wholly in view. The size of a pixel [m] is `scale`, or
+    follows from the rod's diameter [m]. No body, or too little of its edge, is refused.
     """
     grey = picture.astype(np.float64)
     if striker_is == "dark":

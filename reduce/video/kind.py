@@ -15,13 +15,7 @@ from .reduction import Optics, VideoReduction, reduce_video
 
 
 def reduce(path: Path, options: VideoOptions) -> Reduced:
-    """Track the striker and read its speeds before and after each contact.
-
-    Raises
-    ------
-    InputError
-        The clip cannot be read, or shows no striker or no contact.
-    """
+    """Track the striker and read its speeds before and after each contact."""
     last = options.last_frame
     if last is not None and last < options.first_frame:
         raise InputError(f"{last}", key="last_frame", allowed=f"{options.first_frame} or more")

@@ -142,26 +142,11 @@ def reduce_video(
     striker_is: str = "bright",
     background: str = "none",
 ) -> VideoReduction:
-    """Track the striker through a clip and return its contacts.
+    """Track the striker through a clip with gravity downwards and return its contacts.
 
-    Parameters
-    ----------
-    clip
-        Frames with gravity downwards.
-    optics
-        Frame rate, and one way to the size of a pixel.
-    shape
-        `"rod"` (enters from above, straight sides, round tip) or `"sphere"` (wholly in view).
-    striker_is
-        `"bright"` on a dark ground, or `"dark"` on a bright one.
-    background
-        `"none"`, or `"median"` to subtract the median of all frames: for a striker that moves
-        over a ground of its own brightness.
-
-    Raises
-    ------
-    InputError
-        No striker, no contact or too few frames of flight in the clip.
+    A rod enters from above, with straight sides and a round tip; a sphere is wholly in view.
+    `background="median"` subtracts the median of all frames: for a striker that moves over a ground
+    of its own brightness.
     """
     frames = striker_bright(clip, striker_is, background)
     levels = grey_levels(frames, clip.source)

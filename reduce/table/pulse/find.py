@@ -52,10 +52,7 @@ class Pulse:
 def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     """Return the largest pulse of a record (n,), of either sign, its times increasing.
 
-    Raises
-    ------
-    InputError
-        Too few samples, nothing above the noise, or no whole pulse: what it looks like.
+    A record that shows no whole one above the noise is refused for what it looks like.
     """
     if time.size < RULES.table_rows:
         raise InputError(

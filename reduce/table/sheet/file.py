@@ -89,7 +89,7 @@ class Sheet:
 def read_sheet(
     path: Path, columns: Sequence[str] = (), *, sheet: str = "", select: str = ""
 ) -> Sheet:
-    """Read a laboratory's sheet.
+    """Read a laboratory's sheet: a workbook, or a text table in any usual encoding.
 
     Drop and rebound height give the restitution, the root of their ratio, and one in a column of
     its own counts where they do not; where it differs from them, that is told. A drop height that
@@ -98,22 +98,9 @@ def read_sheet(
     differ; other texts become notes; a ball's diameter and mass that are the same in all rows are
     the striker's.
 
-    Parameters
-    ----------
-    path
-        A workbook, of which the first sheet whose headers are understood is read, or a text table
-        in any usual encoding.
-    columns
-        What headers mean, `HEADER=quantity unit` each, where they do not say it themselves.
-    sheet
-        Name of a workbook's sheet, in place of the first that is understood.
-    select
-        `COLUMN=VALUE`: only these rows.
-
-    Raises
-    ------
-    InputError
-        No row of headers is understood, or a column names no unit.
+    `columns`, `HEADER=quantity unit` each, say what headers mean where they do not themselves;
+    `sheet` takes the place of the first whose headers are understood; `select`, `COLUMN=VALUE`,
+    picks rows. Refused where no row of headers is understood, or a column names no unit.
     """
     checked_file(path, most=TABLE_BYTES, allowed="a sheet")
     source, others, decimals, given = str(path), list[str](), "", given_columns(columns)
