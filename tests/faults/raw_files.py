@@ -1,13 +1,16 @@
 """Sound raw files of every kind that `reduce` takes, and damage that recordings meet.
 
 `fuzz.py --raw` damages them by a seed and reduces each as `dentscope reduce KIND FILE` does: to
-numbers, a record and a picture.
+numbers, a record and a picture. Options, some drawn beside those that it needs, stand in a line
+before each.
 """
 
 import io
+import json
 import tempfile
 import zipfile
 from pathlib import Path
+from typing import Literal, get_args, get_origin
 
 import numpy as np
 
@@ -231,8 +234,42 @@ FILES = {
 }  # fmt: skip
 
 
+def sound(name):
+    """A file without a fault."""
+    _end, make, _kind, given = FILES[name]
+    return json.dumps(given).encode() + b"\n" + make()
+
+
+def drawn_options(draw, kind, given):
+    """Options of a kind: those given, and now and then another, within what is allowed."""
+    from dentscope.reduce.kinds import load_kind
+
+    found = dict(given)
+    for name, field in load_kind(kind).options.model_fields.items():
+        if name not in found and draw.random() < 0.02:
+            found[name] = _option(draw, field.annotation)
+    return found
+
+
+def _option(draw, wanted):
+    if get_origin(wanted) is Literal:
+        return draw.choice(get_args(wanted))
+    if wanted is str or str in get_args(wanted):
+        return draw.choice(("1", "3", "99", "force", "A:B", "1=2", "", "mm", "0,1,0,1", "\x1b"))
+    if wanted is int or int in get_args(wanted):
+        return draw.choice((0, 1, 7, 10**9))
+    return draw.choice((0.0, 1.0, 1e-3, 1e-300, 1e300, 10 ** draw.uniform(-9.0, 9.0)))
+
+
 def damaged(name, content, draw, mutated):
-    """Return a changed copy: its units, words or encoding, or what `mutated` does to any file."""
+    """Return a changed copy with options of its own, and whether a number was made none."""
+    _, _, raw = content.partition(b"\n")
+    changed, refuse = _damaged(name, raw, draw, mutated)
+    return json.dumps(drawn_options(draw, *FILES[name][2:])).encode() + b"\n" + changed, refuse
+
+
+def _damaged(name, content, draw, mutated):
+    """Change its units, words or encoding, or do what `mutated` does to any file."""
     text = FILES[name][0] in (".csv", ".txt", ".trk", ".cih")
     kind = draw.choice(("units", "words", "encoding", "any", "any") if text else ("any",))
     data = bytearray(content)
@@ -250,7 +287,9 @@ def damaged(name, content, draw, mutated):
 
 
 def lay_out(name, content, folder):
-    """Put a raw file into a folder, with what belongs beside it."""
+    """Put a raw file and its options into a folder, with what belongs beside it."""
+    said, _, content = content.partition(b"\n")
+    (folder / "options.json").write_bytes(said)
     end = FILES[name][0]
     if name != "frame":
         (folder / f"raw{end}").write_bytes(content)
@@ -265,16 +304,11 @@ def lay_out(name, content, folder):
 
 
 def read(name, path):
-    """Reduce a raw file of `FILES`."""
-    _end, _make, kind, options = FILES[name]
-    reduce_whole(kind, path, options)
-
-
-def reduce_whole(kind, path, options):
-    """Reduce a file to numbers, a record and a picture."""
+    """Reduce a raw file of `FILES` to numbers, a record and a picture."""
     from dentscope.reduce.kinds import load_kind
     from dentscope.reduce.output.record import write_record
 
+    kind, options = FILES[name][2], json.loads((path.parent / "options.json").read_text())
     reduced = load_kind(kind).run(path, options, source="options")
     for trial in reduced.trials:
         for key, value in trial.observables.items():

@@ -281,10 +281,10 @@ def raw(name):
     def change(content, draw):
         return raw_files.damaged(name, content, draw, mutated)
 
-    _end, make, _kind, _options = raw_files.FILES[name]
-    return Reader(
-        name, make, partial(raw_files.read, name), {}, change, partial(raw_files.lay_out, name)
+    sound, read, lay_out = (
+        partial(do, name) for do in (raw_files.sound, raw_files.read, raw_files.lay_out)
     )
+    return Reader(name, sound, read, {}, change, lay_out)
 
 
 def _data(*parts):

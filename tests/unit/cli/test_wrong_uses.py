@@ -67,14 +67,11 @@ def _folder_of_a_newcomer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         "words.png": "no picture\n",
         "words.wav": "no sound\n",
         "words.mp4": "no clip\n",
-        "words.c3d": "no markers\n",
         "words.h5": "no HDF5\n",
     }
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
-    (tmp_path / "nothing.csv").write_bytes(b"")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00\x01" * 20)
-    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00\x01" * 20)
     (tmp_path / "folder").mkdir()
     (tmp_path / "half-set").mkdir()
     (tmp_path / "half-set" / "set.toml").write_text('format = "recording-set/1"\n')
@@ -168,28 +165,13 @@ recordings fetch --catalogue absent.toml
 recordings fetch --out words.txt
 reduce nonsense
 reduce video
-reduce video absent.mp4
 reduce video words.mp4
-reduce video words.mp4 --frame-rate-hz 1000 --pixel-m 1e-4
 reduce video words.mp4 --frame-rate-hz fast --pixel-m 1e-4
 reduce video words.mp4 --frame-rate-hz -5 --pixel-m 1e-4
 reduce tip words.png
-reduce tip words.png --pixel-m 1e-5
 reduce tip words.png --pixel-m 0
-reduce mocap words.c3d
 reduce mocap words.csv --shape cube
-reduce scan words.csv
-reduce scan words.csv --unit um --step-m 1e-6
-reduce scan absent.csv --unit um --step-m 1e-6
-reduce sound words.wav
-reduce sound absent.wav
 reduce sound words.wav --out words.txt
-reduce table words.csv
-reduce table words.csv --holds nonsense
-reduce table words.csv --holds force
-reduce table words.csv --holds force --value nonsense
-reduce table nothing.csv --holds force
-reduce table bytes.csv --holds force
 reduce table words.csv --holds rebounds --into words.txt
 campaign nonsense
 campaign run --design huge

@@ -193,19 +193,24 @@ def _local_parabola(time, height, turning, way, count):
     index = turning + way * np.arange(2, count + 42)
     index = index[(index >= 0) & (index < time.size)]
     above = np.flatnonzero(height[index] - height[turning] > 20.0)
-    run = above[: 1 + int(np.argmax(np.append(np.diff(above), 9) > 1))]
-    index = index[run][:count]
+    index = index[above[: 1 + int(np.argmax(np.append(np.diff(above), 9) > 1))]][:count]
     if index.size < 6:
         return None
     t, y = time[index] - time[turning], height[index]
     used = np.ones(t.size, dtype=bool)
-    design = np.stack([np.ones_like(t), t, t**2], axis=1)
     for _ in range(5):
-        c = np.linalg.lstsq(design[used], y[used], rcond=None)[0]
-        off = np.abs(y - design @ c)
+        found = np.polyfit(t[used], y[used], 2, cov=True)
+        off = np.abs(y - np.polyval(found[0], t))
         used = off < 4.0 * max(1.4826 * np.median(off[used]), 0.03)
-    spread = np.sqrt(np.sum((y - design @ c)[used] ** 2) / (used.sum() - 3))
-    return c, spread**2 * np.linalg.inv(design[used].T @ design[used])
+    return found
+
+
+def _ratio(before, after):
+    """Speeds of two parabolas where they meet next to time 0, one over the other."""
+    meet = np.roots(after - before)
+    meet = meet[np.isreal(meet)].real
+    t = meet[np.argmin(np.abs(meet))] if meet.size else np.nan
+    return -np.polyval(np.polyder(after), t) / np.polyval(np.polyder(before), t)
 
 
 def _independent(time, height, turning, room):
@@ -216,20 +221,11 @@ def _independent(time, height, turning, room):
     ]
     if None in sides:
         return None
-
-    def ratio(c):
-        meet = np.roots((c[3:] - c[:3])[::-1])
-        meet = meet[np.isreal(meet)].real
-        t = meet[np.argmin(np.abs(meet))] if meet.size else np.nan
-        return -(c[4] + 2.0 * c[5] * t) / (c[1] + 2.0 * c[2] * t)
-
-    c = np.concatenate([s[0] for s in sides])
-    step = 1e-3 * np.sqrt(np.concatenate([np.diag(s[1]) for s in sides]))
-    slope = [(ratio(c + h * u) - ratio(c - h * u)) / (2.0 * h)
-             for h, u in zip(step, np.eye(6), strict=True)]  # fmt: skip
-    slope = np.array(slope)
-    variance = slope[:3] @ sides[0][1] @ slope[:3] + slope[3:] @ sides[1][1] @ slope[3:]
-    return ratio(c), math.sqrt(variance), -2.0 * c[2], -2.0 * c[5]
+    (before, _), (after, _) = sides
+    rng = np.random.default_rng(1)
+    drawn = zip(*(rng.multivariate_normal(*side, size=300) for side in sides), strict=True)
+    error = np.std([_ratio(*pair) for pair in drawn])
+    return _ratio(before, after), error, -2.0 * before[0], -2.0 * after[0]
 
 
 def _marble(file):
