@@ -12,7 +12,6 @@ from dentscope.dynamics import (
     Friction,
     Scene,
     Settings,
-    Spot,
     Striker,
     Support,
     arrays_of,
@@ -165,20 +164,3 @@ def test_batch_gives_what_single_calls_give() -> None:
     np.testing.assert_array_equal(
         rows[1, : len(c.OBSERVABLES)], list(strike(scene).observables.values())
     )
-
-
-def test_flattened_tip_counts_in_the_next_trial() -> None:
-    """The weaker body is the sphere: its flat stays with it wherever it strikes next."""
-    ball = Striker(mass=0.03, tip_radius=0.01)
-    scene = scene_of(
-        JACKSON_GREEN, sphere=IRON, flat=STEEL, striker=ball, approach=Approach(1.0), gravity=0.0
-    )
-    first = strike(scene)
-    assert first.residual_sphere_m > 0.0
-    assert first.residual_flat_m == 0.0
-    moved = Spot(first.spot.tip_peak, first.spot.tip_flat)
-    total = math.sqrt(2.0 - first.restitution**2)
-    single = strike(scene.with_(approach=Approach(total)))
-    again = strike(scene.with_(spot=moved))
-    assert again.residual_sphere_m == pytest.approx(single.residual_sphere_m, rel=1e-6)
-    assert again.restitution == pytest.approx(single.restitution * total, rel=1e-6)

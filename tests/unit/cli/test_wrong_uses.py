@@ -215,10 +215,20 @@ proof run --most 0
 proof score --out words.txt
 """
 USES = [line.split() for line in LINES.strip().splitlines()]
+SAID = {
+    "nonsense": "no command", "campaign run --design huge": "smoke",
+    "campaign run --workers 0": "workers", "campaign run --retry all": "failed",
+    "campaign show zz": "no case", "campaign export --data absent.h5": "no such file",
+    "fit absent.h5": "no such file", "fit words.h5": "not a campaign file",
+    "impact absent.toml": "no such file", "impact ball.toml --law nonsense": "no law 'nonsense'",
+    "laws compare case.toml --law kelvin-voigt": "leaves no dent",
+    "laws show nonsense": "hertz, johnson", "laws show wang": "not offered",
+}  # fmt: skip
 
 
 def test_there_are_more_than_a_hundred():
     assert len({tuple(use) for use in USES}) == len(USES) > 100
+    assert SAID.keys() <= {" ".join(use) for use in USES}
 
 
 @pytest.mark.parametrize("use", USES, ids=" ".join)
@@ -230,6 +240,7 @@ def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixt
     # a line a mistake: a file of another kind has several
     assert 1 <= len(lines) <= 25
     assert all(len(line) > 8 for line in lines)
+    assert SAID.get(" ".join(use), "") in told.err
     assert "Traceback" not in told.out + told.err
     assert told.out == ""
 

@@ -254,21 +254,6 @@ def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert float(values["friction_impulse_ratio"]) == pytest.approx(0.13, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["impact", "nowhere.toml"], "nowhere.toml: no such file"),
-        (["impact", "--law", "newton"], "command line: --law: no law 'newton'"),
-        (["inverse", "nowhere.toml"], "nowhere.toml: no such file"),
-    ],
-)
-def test_mistakes_end_with_code_2(
-    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(arguments) == 2
-    assert message in capsys.readouterr().err
-
-
 def test_a_budget_that_runs_out_ends_with_code_3(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

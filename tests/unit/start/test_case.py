@@ -127,13 +127,6 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, capsys, old, new, words):
     assert not (tmp_path / "out").exists()
 
 
-def test_three_mistakes_are_three_lines(tmp_path, capsys):
-    path = tmp_path / "case.toml"
-    path.write_text(GOOD.replace("nu = 0.3", "nu = 3").replace("radius_m = 0.002", "radius_m = -1"))
-    assert run(["case", str(path)]) == 2
-    assert len(capsys.readouterr().err.strip().splitlines()) == 3
-
-
 HARD = """
 radius_m = 0.002
 [sphere]
