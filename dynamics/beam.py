@@ -83,21 +83,11 @@ def shear_coefficient(nu: float) -> float:
 def bending_modes(
     length: float, radius: float, material: Material, *, count: int, degree: int = 0
 ) -> tuple[Array, Array, Array]:
-    """Bending modes of a free-free Timoshenko beam of round section.
+    """Bending modes of a free-free Timoshenko beam of round section; lengths [m].
 
-    Parameters
-    ----------
-    length, radius
-        [m].
-    count
-        Number of modes.
-    degree
-        Highest Legendre polynomial; by default enough for 1e-8 of the highest frequency asked.
-
-    Returns
-    -------
-    (count,) angular frequencies [rad/s]; displacement and slope [1/m] of the struck end for
-    modes of unit mean square mass (modal mass = the beam's mass).
+    `degree` is the highest Legendre polynomial; by default enough for 1e-8 of the highest frequency
+    asked. Returns angular frequencies (count,) [rad/s]; displacement and slope [1/m] of the struck
+    end for modes of unit mean square mass (modal mass = the beam's mass).
     """
     degree = degree or 2 * count + 14
     n = degree + 1
@@ -143,12 +133,8 @@ def rod_modes(
 ) -> Modes:
     """Return the `count` modes of lowest frequency, axial and bending together.
 
-    Frequencies follow from the material and the geometry, the modal masses from the stated mass.
-
-    Raises
-    ------
-    InputError
-        The rod has no length, density or finite modulus, or is too slender for double precision.
+    Frequencies follow from the material and the geometry, the modal masses from the stated mass. A
+    rod without length, density or finite modulus, or too slender for double precision, is refused.
     """
     if count == 0:
         return Modes()

@@ -87,21 +87,9 @@ class Impacts:
         write_file(Path(path), csv_text(rows, header=self.columns))
 
     def frame(self) -> Any:
-        """Return a pandas data frame.
-
-        Raises
-        ------
-        InputError
-            pandas is not installed.
-        """
+        """Return a pandas data frame; refused without pandas."""
         return frame(self.columns)
 
     def to_parquet(self, path: Path | str) -> None:
-        """Write a Parquet file.
-
-        Raises
-        ------
-        InputError
-            pandas or pyarrow is not installed.
-        """
+        """Write a Parquet file; refused without pandas or pyarrow."""
         write_file(Path(path), parquet(self.columns))

@@ -117,14 +117,10 @@ INFERRED = ("alpha", "impulse", "duration", "mean_force", "return_duration", "re
 def infer(striker: Striker, measured: MeasuredScar) -> Inferred:
     """Mean force and duration from depth, sliding length and restitution (corrected 5.11, 5.14).
 
-    x_T(T) = alpha (delta_p - v_i T) with x_T = -L_s gives T; P_y = (1 + e) abs(v_i) / B and
-    F T = P_y give the mean force (gravity's share of the impulse is left out, as in 5.14).
-
-    Raises
-    ------
-    InputError
-        The tip would stick at this friction coefficient, so that it cannot have slid, or an inertia
-        leaves no finite number.
+    x_T(T) = alpha (delta_p - v_i T) with x_T = -L_s gives T; P_y = (1 + e) abs(v_i) / B and F T =
+    P_y give the mean force (gravity's share of the impulse is left out, as in 5.14). Refused where
+    the tip would stick at this friction coefficient, so that it cannot have slid, or an inertia
+    leaves no finite number.
     """
     found = mobility(striker, measured.angle)
     a, b = found.tangential(measured.mu), found.normal(measured.mu)

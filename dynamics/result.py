@@ -153,10 +153,7 @@ class Impact:
 def leave_resting(rows: Array) -> None:
     """End the impacts whose tip rests, held by its weight or on an endless plate that sinks.
 
-    Parameters
-    ----------
-    rows
-        (n, N_OUT) output of the compiled integrator; changed in place.
+    `rows` (n, N_OUT) of the compiled integrator are changed in place.
     """
     rests = rows[:, at.FIRST_COUNT] == RESTS
     for column in _OF_A_PARTING:

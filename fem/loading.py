@@ -57,15 +57,7 @@ class Tally:
 
 
 class Loading:
-    """Walks down the loading path of a problem.
-
-    Parameters
-    ----------
-    problem, accuracy
-        What is solved and how finely.
-    tally
-        Where the counts go.
-    """
+    """Walks down the loading path of a problem; the counts go to `tally`."""
 
     def __init__(self, problem: ContactProblem, accuracy: Accuracy, tally: Tally) -> None:
         self.problem, self.accuracy, self.tally = problem, accuracy, tally

@@ -12,19 +12,10 @@ from ..models.table import FEWEST_UNLOADINGS, LoadingCurve, PairTable, Turns, en
 
 
 def pair_table(solution: fem.Solution, uncertainty: fem.CurveUncertainty) -> PairTable:
-    """Return what a law needs of a solve.
+    """Return what a law needs of a solve and of the uncertainty of its loading curve.
 
-    Parameters
-    ----------
-    solution
-        The pair pressed, and unloaded from several depths.
-    uncertainty
-        Of its loading curve, from `fem.discretisation_uncertainty`.
-
-    Raises
-    ------
-    InputError
-        A pair that yields was unloaded from too few depths.
+    The pair was pressed, and unloaded from several depths; too few of a pair that yields are
+    refused.
     """
     pair, c = solution.problem.pair, solution.loading
     rows = []

@@ -31,16 +31,9 @@ from .table import Table
 def coefficients_content(
     laws: FittedLaws, table: Table, campaigns: Sequence[Path]
 ) -> dict[str, Any]:
-    """Return the content of the coefficients file.
+    """Return the content of the coefficients file: laws.
 
-    Parameters
-    ----------
-    laws
-        The regressions' result.
-    table
-        The rows that it was made from.
-    campaigns
-        The runs and parts that these were read from.
+    And the rows and campaigns they are from.
     """
     fit, correction = laws.fit, laws.correction
     judged = {"compact": laws.compact, "fitted": laws.fitted}
@@ -89,12 +82,7 @@ def hardening_content(
 ) -> dict[str, Any]:
     """Return the part of the coefficients file on metals that harden.
 
-    Parameters
-    ----------
-    fit, campaigns
-        The regression, and the files that it was made from.
-    judged
-        Design that no fit reads to errors and shares within the stated deviations.
+    `judged` is, by design that no fit reads, errors and shares within the stated deviations.
     """
     found = fit.correction
     return {

@@ -42,14 +42,8 @@ def compact_numbers(values: Array, table: Table) -> PairNumbers:
 def correct(values: Array, table: Table, turns: ResidualTable, ripple: Array) -> PairCorrection:
     """Find the correction to the compact law for the cases that have rows.
 
-    Parameters
-    ----------
-    values
-        Coefficients of the compact law.
-    table, turns
-        Rows of the campaign, from `read_tables`; every fourth depth is looked at.
-    ripple
-        Of ln F and ln a of each row's case, shape (2, n); a case whose mesh ripples says less.
+    Of `table` every fourth depth is looked at. `ripple` is that of ln F and ln a of each row's
+    case, shape (2, n); a case whose mesh ripples says less.
     """
     thin = np.arange(len(table.D)) % RULES.every_depth == 0
     numbers = compact_numbers(values, table)

@@ -81,23 +81,10 @@ class _Craters(NamedTuple):
 
 
 def crater_shape(pair: Pair, left: Left, body: Body, *, without: int = -1) -> CraterShape:
-    """Return the crater that a contact leaves in one body.
+    """Return the crater that a contact leaves in one body, which has to keep something.
 
-    Parameters
-    ----------
-    pair
-        The two bodies.
-    left
-        What has stayed; the body has to keep something.
-    body
-        Which.
-    without
-        Number of a published pair that is left out.
-
-    Raises
-    ------
-    InputError
-        The published cases are missing or damaged.
+    `without` is the number of a published pair that is left out. Refused where the published cases
+    are missing or damaged.
     """
     known = _published(body)
     own = _groups(pair, left, body) / known.spread
@@ -155,13 +142,7 @@ def _published(body: Body) -> _Craters:
 
 @cache
 def _read() -> tuple[tuple[int, Pair, Left, dict[Body, Array]], ...]:
-    """Number of the pair, the pair, what was left, and the shapes; of every published unloading.
-
-    Raises
-    ------
-    InputError
-        The published cases are missing or damaged.
-    """
+    """Number of the pair, the pair, what was left, and the shapes; of every published unloading."""
     found: list[tuple[int, Pair, Left, dict[Body, Array]]] = []
     numbers: dict[Pair, int] = {}
     for path in published_parts():

@@ -64,16 +64,9 @@ def fit_tables(
     start: Mapping[str, float] | None = None,
     change: float = 1e-8,
 ) -> FormFit:
-    """Fit the compact law to a campaign.
+    """Fit the compact law to the rows of a campaign, from `form.START` if nothing is given.
 
-    Parameters
-    ----------
-    table, turns
-        Rows of the campaign, from `read_tables`.
-    start
-        Where to start; `form.START` if not given.
-    change
-        Relative change of the misfit at which the regression ends.
+    The regression ends at a relative change of the misfit of `change`.
     """
     first = np.array([{**START, **(start or {})}[name] for name in COEFFICIENTS])
     values, jacobian, misfit, ok = _regress(table, turns, first, change=change)

@@ -72,12 +72,7 @@ class HardeningFit:
 def hardening_records(paths: Sequence[Path], *, held_out: bool = False) -> list[CaseRecord]:
     """Cases of metals with a flow curve that no rate and no heat changes, made by this solver.
 
-    Parameters
-    ----------
-    paths
-        Runs and published parts.
-    held_out
-        Those that are kept out of every fit, instead of the others.
+    Those that are kept out of every fit where `held_out`, else the others.
     """
     found: dict[str, CaseRecord] = {}
     for path in paths:
@@ -91,15 +86,7 @@ def hardening_records(paths: Sequence[Path], *, held_out: bool = False) -> list[
 
 
 def judged_designs(law: HardeningLaw, paths: Sequence[Path]) -> dict[str, dict[str, Any]]:
-    """Errors and shares within the stated deviations, by the design that no fit reads.
-
-    Parameters
-    ----------
-    law
-        The law for metals that harden, with its correction.
-    paths
-        Campaign files.
-    """
+    """Errors and shares within the stated deviations, by the design that no fit reads."""
     designs: dict[str, list[CaseRecord]] = {}
     for record in hardening_records(paths, held_out=True):
         designs.setdefault(record.case.name.rsplit("-", 1)[0], []).append(record)
@@ -111,15 +98,7 @@ def judged_designs(law: HardeningLaw, paths: Sequence[Path]) -> dict[str, dict[s
 
 
 def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> HardeningFit:
-    """Fit the correction, and judge it on pairs left out.
-
-    Parameters
-    ----------
-    fitted
-        The law of perfectly plastic bodies.
-    records
-        From `hardening_records`.
-    """
+    """Fit the correction of the law of perfectly plastic bodies, and judge it on pairs left out."""
     cases = [_case(fitted, record) for record in records]
     fold = np.random.default_rng(1).permutation(len(cases)) % min(RULES.folds, len(cases))
     found: list[dict[str, _Off]] = []
@@ -137,14 +116,9 @@ def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> Hardenin
 def judge_hardening(
     law: HardeningLaw, records: Sequence[CaseRecord]
 ) -> tuple[dict[str, tuple[float, float]], dict[str, tuple[float, float]]]:
-    """Mean and largest errors of a law on pairs, and shares within one and two deviations.
+    """Mean and largest errors of a law on pairs held out.
 
-    Parameters
-    ----------
-    law
-        The law for metals that harden, with its correction.
-    records
-        From `hardening_records`, held out.
+    And shares within one and two deviations.
     """
     assert law.correction is not None
     found = [_off(law.fitted, _case(law.fitted, r), law.correction) for r in records]

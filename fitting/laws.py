@@ -60,13 +60,7 @@ class FittedLaws:
 
 
 def fit_laws(table: Table, turns: ResidualTable) -> FittedLaws:
-    """Fit both laws, and judge them on combinations left out.
-
-    Parameters
-    ----------
-    table, turns
-        Rows of a campaign, from `read_tables`.
-    """
+    """Fit both laws to rows of a campaign, and judge them on combinations left out."""
     fit, ripple = fit_tables(table, turns), np.stack(ripple_of(table))
     correction = correct(fit.values, table, turns, ripple)
     start = dict(zip(Coefficients._fields, fit.values.tolist(), strict=True))
@@ -114,16 +108,10 @@ def left_out(
     *,
     folds: int,
 ) -> list[Prediction]:
-    """Every row as predicted by fits that did not see its combination.
+    """Every row as predicted by fits that did not see its combination, left out in `folds` groups.
 
-    Parameters
-    ----------
-    predict_without
-        Fits the rows and the turning points of two masks; returns what each law then says of all.
-    table, turns
-        The rows.
-    folds
-        Groups of combinations that are left out in turn.
+    `predict_without` fits the rows and the turning points of two masks; returns what each law then
+    says of all.
     """
     count = len(table.pairs)
     # a fixed shuffle: neighbours of a design do not leave together, and a rerun gives the same

@@ -74,17 +74,9 @@ class Refit:
 def refit(sources: Sequence[Path], *, progress: Progress = lambda _: None) -> Refit:
     """Fit the closed forms to the cases of runs and published parts.
 
-    Parameters
-    ----------
-    sources
-        Folders of runs, parts; a combination in two of them counts once, the later wins.
-    progress
-        Called with a line before each step.
-
-    Raises
-    ------
-    InputError
-        A source is missing or damaged, or they hold no completed elastic-plastic case.
+    A combination in two sources counts once, the later wins. `progress` is called with a line
+    before each step. Refused where a source is missing or damaged, or they hold no completed
+    elastic-plastic case.
     """
     table, turns = read_tables(sources)
     progress(
@@ -106,10 +98,7 @@ def refit_hardening(
 ) -> bool:
     """Fit the law of metals that harden to the other laws of a content, and put it there.
 
-    Returns
-    -------
-    bool
-        Whether the sources hold metals that harden; else nothing changes.
+    Returns whether the sources hold such metals; else nothing changes.
     """
     records = hardening_records(sources)
     if not records:
@@ -123,13 +112,7 @@ def refit_hardening(
 
 
 def judged(sources: Sequence[Path], laws: Sequence[ClosedForm]) -> Judged:
-    """Return the errors of laws on the cases that no fit reads.
-
-    Raises
-    ------
-    InputError
-        The sources hold no such case.
-    """
+    """Return the errors of laws on the cases that no fit reads; sources without one are refused."""
     table, turns = read_tables(sources, held_out=True)
     errors, shares = [], {}
     for law in laws:

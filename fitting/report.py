@@ -95,10 +95,7 @@ def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]
 def uncertainty_rows(within: Mapping[str, Within]) -> list[list[str]]:
     """Rows of the table of standard deviations, its head first.
 
-    Parameters
-    ----------
-    within
-        Shares of errors within one and two of them, by law and quantity.
+    `within` has shares of errors within one and two of them, by law and quantity.
     """
     names = {
         "force": "F", "radius": "a", "share": "delta_s*", "dent": "residual depth",
@@ -114,10 +111,7 @@ def uncertainty_rows(within: Mapping[str, Within]) -> list[list[str]]:
 def hardening_rows(columns: Mapping[str, Mapping[str, Sequence[float]]]) -> list[list[str]]:
     """Rows of the table of errors on metals that harden, its head first.
 
-    Parameters
-    ----------
-    columns
-        Mean and largest error by title and by the names of `Uncertainty`.
+    `columns` has mean and largest error by title and by the names of `Uncertainty`.
     """
     names = {
         "force": ("F [%]", 100.0, "1, 5"),
@@ -144,14 +138,8 @@ def write_report(
 ) -> Path:
     """Write the page and its pictures into `folder`.
 
-    Parameters
-    ----------
-    laws, content, table, turns
-        The laws, the coefficients file's content, and the rows.
-    folder
-        Where the report goes.
-    validation
-        Names of laws and their errors on cases that no fit reads, if the campaign holds any.
+    `validation` are names of laws and their errors on cases that no fit reads, if the campaign
+    holds any.
     """
     from . import pictures
 

@@ -122,25 +122,13 @@ def _masked(table: Any, mask: Mask) -> dict[str, Any]:
 def read_tables(
     paths: Path | Sequence[Path], *, held_out: bool = False
 ) -> tuple[Table, ResidualTable]:
-    """Read runs and published parts into the two tables.
+    """Read runs and published parts into the two tables; without a completed case refuse them.
 
-    Parameters
-    ----------
-    paths
-        One run or part, or several; a combination in two of them counts once, the later wins.
-    held_out
-        Read the cases that are kept out of every fit, and only those, instead of the others.
-
-    Notes
-    -----
-    A case that the present solver made wins over one that an earlier version of it made. Cases of
-    the lowest resolution, whose force ripples by percents, count only where none is finer. Metals
-    that harden or feel the rate are left out: the forms know neither.
-
-    Raises
-    ------
-    InputError
-        A file is missing or damaged, or they hold no completed elastic-plastic case.
+    A combination in two of them counts once, the later wins; a case that the present solver made
+    wins over one that an earlier version of it made. With `held_out` only the cases that are kept
+    out of every fit are read. Cases of the lowest resolution, whose force ripples by percents,
+    count only where none is finer. Metals that harden or feel the rate are left out: the forms know
+    neither.
     """
     paths = [paths] if isinstance(paths, Path) else list(paths)
     chosen: dict[object, CaseRecord] = {}

@@ -41,10 +41,7 @@ def drawn_from() -> str:
 def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, ClosedForm]:
     """Return the compact and the fitted law of a coefficients file's content.
 
-    Raises
-    ------
-    InputError
-        The file belongs to another form, or lacks a number.
+    One of another form, or that lacks a number, is refused.
     """
     found = content.get("format")
     if found != FORMAT:
@@ -97,10 +94,7 @@ def shipped_laws() -> tuple[ContactLaw, ...]:
 def hardening_correction(content: Mapping[str, Any], *, source: str) -> HardeningCorrection | None:
     """Return what a coefficients file adds for metals that harden; none if it knows none.
 
-    Raises
-    ------
-    InputError
-        It corrects other quantities than this law does.
+    One that corrects other quantities than this law does is refused.
     """
     found = content.get("hardening")
     if found is None:

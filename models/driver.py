@@ -63,13 +63,7 @@ def map_residual(kernel, par, row, peak, sphere, flat):
 
 
 def depths_of(given: Depths) -> Array:
-    """Return approaches as numbers [m], of their own shape.
-
-    Raises
-    ------
-    InputError
-        Text, as "20 um", or what else is no number.
-    """
+    """Return approaches as numbers [m], of their own shape; refuse text such as "20 um"."""
     return numbers(given, key="depth", allowed="depths in m")
 
 
@@ -83,13 +77,7 @@ class Rows(NamedTuple):
 
 
 def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> Rows:
-    """Take a call apart; `parameters` is the law's own method of that name.
-
-    Raises
-    ------
-    InputError
-        A depth is not a number.
-    """
+    """Take a call apart; `parameters` is the law's own method of that name."""
     d = depths_of(depth)
     if not np.all(np.isfinite(d)):
         raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")

@@ -173,10 +173,7 @@ def _without_flow(pair: Pair) -> Pair:
 def representative_strain(a: Array, yields_at: float) -> Array:
     """Plastic strain that stands for those under a contact of radius a/R, first yield at another.
 
-    Parameters
-    ----------
-    a, yields_at
-        Contact radius, and that at first yield, over R; shape (...).
+    Both over R, shape (...).
     """
     return np.asarray(REPRESENTATIVE * np.maximum(a - yields_at, 0.0))
 

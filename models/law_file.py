@@ -26,18 +26,10 @@ def is_file(name: str) -> bool:
 
 
 def read_law(name: str) -> ContactLaw:
-    """Read a law by the name of its file.
+    """Read a law by the name of its file, or refuse one that is missing or damaged.
 
-    Parameters
-    ----------
-    name
-        law.json of `dentscope case`, or the folder that holds it; or a file of coefficients, whose
-        law is `fitted` unless the name ends in `:compact` or `:hardening`.
-
-    Raises
-    ------
-    InputError
-        There is none, or it is damaged.
+    law.json of `dentscope case`, or the folder that holds it; or a file of coefficients, whose law
+    is `fitted` unless the name ends in `:compact` or `:hardening`.
     """
     base, chosen, kind = name.partition(".json:")
     path = Path(f"{base}.json" if chosen else name)

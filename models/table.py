@@ -177,13 +177,7 @@ def _groups(pair: Pair) -> list[float]:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class TableLaw(ContactLaw):
-    """The law of the pairs whose finite elements were given.
-
-    Parameters
-    ----------
-    tables
-        One or several pairs'.
-    """
+    """The law of the pairs whose finite elements were given."""
 
     tables: tuple[PairTable, ...]
 
@@ -193,13 +187,7 @@ class TableLaw(ContactLaw):
         return TABLE_KERNELS
 
     def parameters(self, pair: Pair) -> Array:
-        """Common numbers, then the table of the pair.
-
-        Raises
-        ------
-        InputError
-            No table is of this pair.
-        """
+        """Common numbers, then the table of the pair; one without a table is refused."""
         return np.concatenate([common_parameters(pair), _numbers(self._table(pair))])
 
     def share(self, pair: Pair, depth: Depths) -> Array:
@@ -261,19 +249,8 @@ def energy_exponent(depth: Array, force: Array, residual: float) -> float:
     """Exponent of the power law that gives back the same energy, F_m (Delta_m - Delta_r)/(N + 1).
 
     The unloading is no exact power law; a slope fitted to its logarithms, which look at small
-    forces, gives back 3 % too little. Between neighbours the curve is taken as a power law.
-
-    Parameters
-    ----------
-    depth, force
-        Of an unloading, from its peak on, shape (n,), in any unit.
-    residual
-        The permanent approach, in the unit of the depth.
-
-    Returns
-    -------
-    float
-        N; nan where the curve is none.
+    forces, gives back 3 % too little. Between neighbours the curve, shape (n,), from its peak on,
+    is taken as a power law; nan where it is none. Depth and permanent approach are in one unit.
     """
     x, y = (depth - residual) / (depth[0] - residual), force / force[0]
     m = (y > 1e-9) & (x > 1e-9)

@@ -80,20 +80,7 @@ def read_table(path: Path) -> TableLaw:
 
 
 def table_from(content: object, *, source: str, name: str) -> TableLaw:
-    """Return the law that `dentscope case` wrote.
-
-    Parameters
-    ----------
-    content
-        Of its law.json.
-    source, name
-        The file, for errors; what the law is called.
-
-    Raises
-    ------
-    InputError
-        It is damaged.
-    """
+    """Return the law that `dentscope case` wrote; `source` is the law.json that errors name."""
     if not isinstance(content, dict):
         raise InputError("no table", source=source, allowed=_MADE)
     found = parse_model(content, _TableFile, source=source)

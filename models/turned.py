@@ -23,13 +23,7 @@ _REGIMES = {"flattening": "indentation", "indentation": "flattening"}
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class TurnedLaw(ContactLaw):
-    """Another law whose sphere is the pair's flat; force, radius and recovery are of both.
-
-    Parameters
-    ----------
-    law
-        The law itself.
-    """
+    """Another law whose sphere is the pair's flat; force, radius and recovery are of both."""
 
     law: ContactLaw
 

@@ -169,16 +169,8 @@ class Blow:
     def table(self, *, exact: bool = False) -> list[tuple[str, ...]]:
         """Return the observables in units for people, a law a column; what is nothing is left out.
 
-        Parameters
-        ----------
-        exact
-            Without the standard deviations.
-
-        Returns
-        -------
-        list of tuple of str
-            Name with unit, then the value by each law, with its standard deviation; of a law by
-            which the blow did not end nothing.
+        Name with unit, then the value by each law, with its standard deviation unless `exact`; of a
+        law by which the blow did not end nothing.
         """
         ended = [law for law, one in self.impacts.items() if one.outcome.completed]
         shown = dict(zip(ended, _shown([self[law] for law in ended]), strict=True))
@@ -253,10 +245,7 @@ class Blow:
 def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
     """Return the blow of a set-up by these laws, every repeat on the spot of the one before.
 
-    Raises
-    ------
-    InputError
-        A body comes with a flow curve, and none of the laws follows one.
+    A body with a flow curve is refused where none of the laws follows one.
     """
     setup.check_laws(laws)
     traces: dict[str, Trace] = {}

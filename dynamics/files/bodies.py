@@ -17,19 +17,9 @@ from ..scene import Striker
 
 
 def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, Striker]:
-    """Return pair and striker of a rig.
+    """Return pair and striker of a rig; `source` is the file that errors name.
 
-    Parameters
-    ----------
-    rig, name
-        The rig's numbers and one of its strikers.
-    source
-        File that an error names.
-
-    Raises
-    ------
-    InputError
-        A modulus or Poisson's ratio is missing.
+    A body without a modulus or Poisson's ratio is refused.
     """
     body = rig.material(f"strikers.{name}", source=source)
     flat, striker = rig.material("target", source=source), striker_of(rig, name)
@@ -57,11 +47,7 @@ def flowing(metal: Material, table: BodyTable, key: str, *, source: str) -> Mate
 
     A curve without a stated strength is taken as it is. Beside one it is scaled to reach it at a
     plastic strain of 0.2 %, as in a recording set, unless it begins at it. A law begins at it.
-
-    Raises
-    ------
-    InputError
-        Both are given, the strength of a law is missing, or the body cannot flow.
+    Refused where both are given, the strength of a law is missing, or the body cannot flow.
     """
     law: HardeningTable | None = getattr(table, "hardening", None)
     if not table.flow_curve and law is None:

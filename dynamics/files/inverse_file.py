@@ -103,12 +103,9 @@ class InverseRow:
 
 
 def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
-    """Read an inverse file and infer each trial.
+    """Read an inverse file and infer each trial; every mistake is a line.
 
-    Raises
-    ------
-    InputError
-        One line for each mistake, also for a friction coefficient at which the tip sticks.
+    A friction coefficient at which the tip sticks is one.
     """
     source = str(path)
     content = read_toml(path)

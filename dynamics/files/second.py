@@ -43,15 +43,7 @@ class SecondSphere(StruckSphere):
     def facing(self, scene: Scene) -> Scene:
         """Return the impact of one sphere on a flat that is this one's.
 
-        Parameters
-        ----------
-        scene
-            The striking sphere on a flat; it keeps its own radius where it flies.
-
-        Raises
-        ------
-        InputError
-            The seat is no wider than the sphere.
+        The striking sphere keeps its own radius where it flies; a seat no wider is refused.
         """
         striker = scene.striker
         R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
@@ -71,15 +63,8 @@ class SecondSphere(StruckSphere):
     def departure(self, pair: Pair, delta: float | Array) -> Array:
         """Return how far 1/R may be off where both yield: the force's part, relative, (...).
 
-        The mirror's departure times the root of 2 R/R_2, R_2 of the larger; in a seat twice that,
-        and 4 R/|R_2| times it as the seat closes, which is chosen.
-
-        Parameters
-        ----------
-        pair
-            That of `facing`.
-        delta
-            (...) approach [m].
+        The mirror's departure at the approach (...) [m] times the root of 2 R/R_2, R_2 of the
+        larger; in a seat twice that, and 4 R/|R_2| times it as the seat closes, which is chosen.
         """
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(np.asarray(delta, dtype=float))
@@ -98,11 +83,6 @@ class SecondSphere(StruckSphere):
 
         The law parts it between a sphere and a flat. Of two equal spheres neither is the flat: the
         truth lies midway to the share that either would have as the other.
-
-        Parameters
-        ----------
-        pair, delta
-            As of `departure`.
         """
         depth = np.asarray(delta, dtype=float)
         if not math.isfinite(pair.Sy_min):
@@ -128,12 +108,7 @@ def second_of(numbers: RigNumbers) -> SecondSphere | None:
 def mirror_error(pair: Pair, delta: float | Array) -> Array:
     """Return how much more two equal spheres carry than one on a flat is said to, relative, (...).
 
-    Parameters
-    ----------
-    pair
-        Sphere and flat of radius R; both are taken to be of the weaker metal.
-    delta
-        (...) approach of both [m].
+    Sphere and flat of radius R are both taken to be of the weaker metal; `delta` (...) [m].
     """
     law, body = LAWS["fitted"], pair.weaker
     both = Pair(body, body, pair.R)
@@ -147,9 +122,6 @@ def mirror_error(pair: Pair, delta: float | Array) -> Array:
 def mirrored(pair: Pair) -> Pair:
     """Return the sphere on a rigid flat that is one half of two equal spheres.
 
-    Parameters
-    ----------
-    pair
-        Equal materials; R is that of both, half of one sphere's.
+    R is that of both, half of one sphere's.
     """
     return Pair(pair.sphere, pair.flat.with_(rigid=True), 2.0 * pair.R)

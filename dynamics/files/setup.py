@@ -210,13 +210,7 @@ class Setup:
         return {key: text for key, text in {**texts, **named}.items() if text}
 
     def check_laws(self, laws: Sequence[ContactLaw]) -> None:
-        """Refuse a flow curve that none of the laws follows, a mechanism that acts by none.
-
-        Raises
-        ------
-        InputErrors
-            There is one.
-        """
+        """Refuse a flow curve that none of the laws follows, a mechanism that acts by none."""
         curves = curves_in(self.file)
         if self.pair is not None and not self.pair.perfectly_plastic:
             curves = ["pair.flow"]
@@ -278,24 +272,12 @@ class Setup:
 
 
 def read_setup(path: Path) -> Setup:
-    """Read and check a set-up file.
-
-    Raises
-    ------
-    InputErrors
-        One line for each mistake: file, key, value, what is allowed.
-    """
+    """Read and check a set-up file; every mistake is a line."""
     return setup_of(read_toml(path), source=str(path))
 
 
 def setup_of(content: dict[str, Any], *, source: str) -> Setup:
-    """Check the content of a set-up file; `source` names it in errors.
-
-    Raises
-    ------
-    InputErrors
-        One line for each mistake: file, key, value, what is allowed.
-    """
+    """Check the content of a set-up file; `source` names it in errors, a line each."""
     known = tuple(taken_elsewhere(content, source=source))
     if known:
         raise InputErrors(known)

@@ -155,19 +155,7 @@ def run_sweep(
     sweep: SweepTable, plain: Scene, settings: Settings, *, stated: Stated,
     asked: Asked = NONE_ASKED, change: Change = unchanged,
 ) -> Impacts:  # fmt: skip
-    """Simulate every combination; what is not swept is the scene's.
-
-    Parameters
-    ----------
-    sweep
-        At least one condition.
-    plain, settings
-        The set-up's, without mechanisms.
-    stated
-        How the set-up's striker arrives.
-    asked, change
-        Mechanisms, and what is done to the force of each impact.
-    """
+    """Simulate every combination of one condition or more; what is not swept is the scene's."""
     given = _given(sweep, plain, stated)
     return impacts(plain, **given, settings=settings, asked=asked, change=change)
 

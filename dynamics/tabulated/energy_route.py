@@ -87,22 +87,10 @@ def why_not(scene: Scene) -> str:
 def energy_impacts(
     law: ContactLaw, pair: Pair, mass: Array, speed: Array, *, gravity: float
 ) -> Array:
-    """Return normal impacts of one pair.
+    """Return normal impacts of one pair: masses and speeds of the striker, (n,) [kg, m/s].
 
-    Parameters
-    ----------
-    law, pair
-        The contact.
-    mass, speed
-        Of the striker, shape (n,) [kg, m/s].
-    gravity
-        [m/s^2].
-
-    Returns
-    -------
-    ndarray
-        The columns `NAMES`, shape (n, len(NAMES)); a row of nan where the route does not answer:
-        deeper than `DEEPEST` or than the law's table, gravity above its limit, or no rebound.
+    The columns are `NAMES`, shape (n, len(NAMES)); a row of nan where the route does not answer:
+    deeper than `DEEPEST` or than the law's table, gravity [m/s^2] above its limit, or no rebound.
     """
     out = np.full((len(speed), len(NAMES)), np.nan)
     table = energy_table(law, pair)

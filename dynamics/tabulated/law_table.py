@@ -114,11 +114,8 @@ _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
 class TabulatedLaw(ContactLaw):
     """Another law from a table for each pair, made at its first use and kept.
 
-    Parameters
-    ----------
-    law
-        The law itself; its recovery is a power of the depth above the residual depth, and its
-        contact radius one of the depth alone.
+    Its recovery is a power of the depth above the residual depth, and its contact radius one of the
+    depth alone.
     """
 
     law: ContactLaw
@@ -138,13 +135,7 @@ class TabulatedLaw(ContactLaw):
         self.law.warn_outside(pair, depth)
 
     def table(self, pair: Pair) -> TableCells:
-        """Return the pair's table.
-
-        Raises
-        ------
-        InputError
-            The law recovers otherwise than by a power, or jumps or oscillates.
-        """
+        """Return the pair's table; refuse a law that recovers otherwise, jumps or oscillates."""
         par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
         key = (self.law.name, self.law.kernels.residual, par.tobytes())
         if key not in _TABLES:

@@ -319,12 +319,7 @@ def _slopes(setup: Setup, law: ContactLaw, acting: Sequence[bool]) -> list[dict[
 def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
     """Return standard deviations along a sweep by one law, (n,) each, as those of a blow.
 
-    Parameters
-    ----------
-    setup, law
-        The set-up with its sweep.
-    found
-        What the sweep gave by this law; without one that did not end, there is none.
+    Without an impact that did end, there is none.
     """
     if not all(found["outcome"] == "completed"):
         return {}

@@ -70,12 +70,7 @@ def blow_on(
 ) -> ExportedBlow:
     """Return a collision, scaled from the one of unit mass, stiffness and speed.
 
-    Parameters
-    ----------
-    stiffness
-        k [N/m^power].
-    damping
-        Without dimension: c, or chi times the speed.
+    Stiffness k [N/m^power]; damping without dimension: c, or chi times the speed.
     """
     one = _unit_blow(law, damping)
     length = (mass * speed**2 / stiffness) ** (1.0 / (law.power + 1.0))
@@ -93,13 +88,7 @@ def stiffness_for(law: Damped, depth: float, damping: float, mass: float, speed:
 
 @cache
 def damping_for(law: Damped, restitution: float) -> float:
-    """Return the damping at which a ball comes back with this restitution.
-
-    Raises
-    ------
-    InputError
-        No damping takes that much.
-    """
+    """Return the damping at which a ball comes back so; refuse what no damping takes."""
 
     def above(damping: float) -> float:
         return _unit_blow(law, damping).restitution - restitution

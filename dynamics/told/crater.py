@@ -50,16 +50,8 @@ def surfaces_left(
     """Return the surfaces that a blow leaves; none of a body that keeps nothing.
 
     Along a scar the walls of a crater are drawn out to its ends. The shape of a contact that ends
-    at an edge, or that is like no published one, is not known.
-
-    Parameters
-    ----------
-    scene
-        The blow.
-    found
-        What came of it.
-    std
-        Standard deviation of a field of `Impact` by its name; none: no error is told.
+    at an edge, or that is like no published one, is not known. `std` gives the standard deviation
+    of a field of `Impact`; without it no error is told.
     """
     marks = found.spot.imprints
     mark = max(marks, key=lambda one: one.peak, default=None)

@@ -89,23 +89,9 @@ class ExportedRow(NamedTuple):
 def substitutes(
     law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]
 ) -> list[ExportedRow]:
-    """Return the parameters at each speed.
+    """Return the parameters at each speed [m/s] of a ball of mass [kg] on a flat.
 
-    Parameters
-    ----------
-    law
-        Ours, or a published one.
-    pair
-        Ball and flat.
-    mass
-        Of the ball [kg]; for two balls `two_balls` gives pair and mass.
-    speeds
-        Of the approach [m/s].
-
-    Raises
-    ------
-    InputError
-        A speed at which nothing comes back.
+    For two balls `two_balls` gives pair and mass. A speed at which nothing comes back is refused.
     """
     rows = []
     for speed in speeds:

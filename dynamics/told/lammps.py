@@ -68,16 +68,8 @@ def lammps_lines(
 ) -> str:
     """An input of LAMMPS that runs as it is: the softened Hertz law at each speed.
 
-    Parameters
-    ----------
-    rows, pair, mass
-        Of the ball on the flat [kg], or of both spheres.
-    friction
-        Coulomb's coefficient, of both contacts.
-    of_balls
-        Of two balls, from `two_balls`, at the same speeds.
-    second
-        The sphere that the ball strikes, in place of the flat.
+    `mass` [kg] and Coulomb's `friction` are those of the ball on the flat, or of both spheres where
+    it strikes `second`; `of_balls` are two balls, from `two_balls`, at the same speeds.
     """
     told: list[str] = []
     given: list[tuple[str, str, float, float]] = []

@@ -35,12 +35,8 @@ class RigShape(NamedTuple):
 def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
     """Return the outlines of a blow's bodies.
 
-    Parameters
-    ----------
-    setup
-        The blow.
-    place, height
-        (n,) places along the surface that is struck and its height over the one that was [m].
+    `place` and `height` (n,) are places along the surface that is struck and its height over the
+    one that was [m].
     """
     body, target = setup.file.strikers[setup.striker], setup.file.target
     R, r = body.tip_radius_m.value, body.body_radius

@@ -197,14 +197,9 @@ class Formula(NamedTuple):
 
 
 def formula_of(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]) -> Formula:
-    """Fit the formula to a law's restitution between the first and the last speed.
+    """Fit the formula to a law's restitution between the first and the last speed [m/s].
 
-    Parameters
-    ----------
-    law, pair, mass
-        As in `substitutes`.
-    speeds
-        Of the table [m/s]; around a single one a factor of three either way.
+    Around a single one it is a factor of three either way.
     """
     first, last = min(speeds), max(speeds)
     if last < 1.5 * first:

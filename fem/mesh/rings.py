@@ -46,21 +46,10 @@ def widening(x: float) -> float:
 
 
 def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: float) -> Array:
-    """Ring radii from about `core` to `end`.
+    """Ring radii from about `core` to `end`, increasing, shape (n,) [R].
 
-    Parameters
-    ----------
-    zone
-        Where the rings are fine.
-    core, end
-        First and last radius; the first is moved to the next rung below.
-    fine, coarse
-        Ring width over radius in the zone, and beyond twice its neighbourhood.
-
-    Returns
-    -------
-    ndarray
-        Increasing radii, shape (n,) [R].
+    The first is moved to the next rung below. `fine` and `coarse` are ring widths over radius in
+    the zone, and beyond twice its neighbourhood.
     """
     rung = math.log1p(fine) / RULES.ring_divisions
     first = math.floor(math.log(core / end) / rung)

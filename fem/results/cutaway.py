@@ -23,23 +23,10 @@ _LABEL = "von Mises stress over the weaker body's strength"
 
 
 def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> Path | None:
-    """Draw von Mises stress on a cut through the deformed bodies.
+    """Draw von Mises stress over Sy_min [Pa] on a cut through the deformed bodies.
 
-    Parameters
-    ----------
-    snapshot
-        The fields.
-    path
-        PNG file.
-    Sy_min
-        Strength that the stress is shown over [Pa].
-    extent
-        Half width of the picture [m].
-
-    Returns
-    -------
-    Path or None
-        The file; none where nothing can be rendered without a screen.
+    `extent` is half the width of the picture [m]. None where nothing can be rendered without a
+    screen.
     """
     if not offscreen_available():
         return None

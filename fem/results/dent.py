@@ -31,18 +31,8 @@ def draw_dent(
 ) -> Path:
     """Draw by how much the surface of every body that keeps something has moved.
 
-    Parameters
-    ----------
-    unloading
-        What is left.
-    path
-        PNG file.
-    R
-        Radius of the sphere [m].
-    under_load
-        The surfaces at the depth that it was unloaded from; none: not drawn.
-    rim
-        Diameter of the rim [m]; nan: there is none.
+    Radius of the sphere and diameter of the rim [m], nan where there is none; `under_load` are the
+    surfaces at the depth that it was unloaded from.
     """
     from matplotlib.figure import Figure
 

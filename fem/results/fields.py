@@ -49,21 +49,8 @@ def write_vtu(snapshot: Snapshot, path: Path) -> Path:
 def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> Path:
     """Draw the deformed section: von Mises stress to the left, plastic strain to the right.
 
-    Parameters
-    ----------
-    snapshot
-        The fields; where nothing flows the stress is on both sides.
-    path
-        PNG file.
-    Sy_min
-        Strength that the stress is shown over [Pa].
-    extent
-        Half width of the picture [m].
-
-    Returns
-    -------
-    Path
-        The file.
+    Where nothing flows the stress, over Sy_min [Pa], is on both sides; `extent` is half the width
+    of the picture [m].
     """
     from matplotlib.figure import Figure
 

@@ -70,12 +70,7 @@ def _place(grid: Discretisation, x: Array, radius: float) -> float:
 def edge_of_contact(contact: ContactState, slave_r: Array) -> float:
     """Radius at which the gap opens, from the shape of the gap just outside the contact.
 
-    Parameters
-    ----------
-    contact
-        Contact state.
-    slave_r
-        Current radii of the slave nodes, shape (n_slave,) [R].
+    `slave_r` are current radii of the slave nodes, shape (n_slave,) [R].
     """
     active = np.flatnonzero(contact.pressure > 0.0)
     if len(active) == 0:

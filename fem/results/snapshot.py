@@ -14,19 +14,7 @@ from ..solution import Profile, Snapshot
 def take_snapshot(
     grid: Discretisation, found: Equilibrium, state: State, *, depth: float, pair: Pair
 ) -> Snapshot:
-    """Collect stresses, strains, displacements and the two surfaces of a state.
-
-    Parameters
-    ----------
-    grid
-        The discretisation.
-    found, state
-        Converged equilibrium and the material state there.
-    depth
-        Delta/R.
-    pair
-        For the units.
-    """
+    """Collect stresses, strains, displacements and the two surfaces of a converged state."""
     R, unit = pair.R, grid.stress_unit
     mesh, index = grid.mesh, grid.element_index
     n = len(mesh.quads)

@@ -71,19 +71,9 @@ def largest_force_error(level: str, pair: Pair, depth: float) -> float:
 def discretisation_uncertainty(
     curve: Curve, problem: ContactProblem, accuracy: Accuracy
 ) -> CurveUncertainty:
-    """Uncertainty that mesh and step bring at a level of accuracy.
+    """Uncertainty that mesh and step bring to a loading curve at one of the three levels.
 
-    Parameters
-    ----------
-    curve
-        A loading curve.
-    problem, accuracy
-        What was solved and how finely; one of the three levels.
-
-    Raises
-    ------
-    ValueError
-        Settings that were never measured.
+    ValueError for settings that were never measured.
     """
     content = _mesh_errors()
     if accuracy.level not in content["levels"]:

@@ -100,19 +100,9 @@ class _Written(ast.NodeTransformer):
 
 
 def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
-    """Write the law in every language, and as a normal model of LAMMPS.
+    """Write the law in every language, and as a normal model of LAMMPS; return the files.
 
-    Parameters
-    ----------
-    law
-        The compact or the fitted law.
-    folder
-        Where the files go; made if needed.
-
-    Returns
-    -------
-    list of Path
-        The files written.
+    The folder is made if needed.
     """
     texts = {
         f"{NAME}.py": python_source(law),

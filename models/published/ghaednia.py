@@ -269,14 +269,8 @@ def updated_jackson_green(pair: Pair, depth: float) -> tuple[float, float]:
     """Jackson and Green's contact radius [m] with the weak body's share and R', and delta_n.
 
     a = sqrt(R' delta (delta_n/1.9)^B) before the corrections chi of 2.21-2.33 (figures 2.12 and
-    2.13), with the shares of 2.13-2.16 and R' of 2.18; below delta_n = 1.9 the power is 1.
-
-    Parameters
-    ----------
-    pair
-        Both bodies.
-    depth
-        Approach, above 0 [m].
+    2.13), with the shares of 2.13-2.16 and R' of 2.18; below delta_n = 1.9 the power is 1. The
+    approach [m] is above 0.
     """
     par = GHAEDNIA.parameters(pair)
     delta, updated, n = _weak_body(par, depth)

@@ -38,12 +38,7 @@ def olsson_larsson(a_over_R: npt.ArrayLike, *, LD: float) -> Array:
     """p/S = 3 {1 - 0.0461 [ln(a/R) - ln(L D)]^2.214} (Eq. 1.12), a/R >= L D.
 
     The thesis defines neither L nor D and the paper was not readable, so that their product is the
-    caller's; below it the power has no real value and the pressure is 3 S.
-
-    Raises
-    ------
-    InputError
-        `LD` is not a positive number.
+    caller's, a positive number; below it the power has no real value and the pressure is 3 S.
     """
     if not 0.0 < LD < math.inf:
         raise InputError(f"{LD:g}", key="LD", allowed="a number above 0")
