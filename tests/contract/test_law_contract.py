@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.models import LAWS, critical_depth, law_named
+from dentscope.models import LAWS, critical_depth
 from dentscope.models.base import CLAUSES
 from dentscope.models.table import LoadingCurve, PairTable, Turns, table_law
 
@@ -180,11 +180,6 @@ def test_kernel_and_driver_are_one(law):
 def test_a_depth_that_is_no_number_is_refused():
     with pytest.raises(InputError, match="depth"):
         LAWS["hertz"].loading(PAIRS["equal"], [1e-6, math.nan])
-
-
-def test_an_unknown_law_lists_the_known():
-    with pytest.raises(InputError, match="jackson-green"):
-        law_named("nonsense")
 
 
 def test_jackson_green_joins_hertz_at_w_1_9_within_half_a_percent():

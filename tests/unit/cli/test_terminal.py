@@ -2,7 +2,6 @@
 
 import io
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -85,10 +84,6 @@ def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
     shown = capsys.readouterr().out
     assert "F [N]" in shown
     assert "data/campaign" in shown
-    assert run(["campaign", "status"]) == 0
-    shown = capsys.readouterr().out
-    assert "No run of your own" in shown
-    assert re.search(r"thesis +262 done +1 failed", shown)
 
 
 def test_the_shell_completes_commands():

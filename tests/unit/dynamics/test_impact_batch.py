@@ -230,17 +230,6 @@ def test_a_row_of_a_sweep_arrives_as_the_impact_alone(striker, stated, swept):
     assert row.striker.inertia == pytest.approx(alone.striker.inertia, rel=1e-12)
 
 
-def test_a_sweep_of_the_angle_of_a_fall_gives_what_its_impacts_give():
-    """At 5 degrees of a fall of 0.4 m a quarter of a metre a second goes into the flat."""
-    law = LAWS["fitted"]
-    (row,) = _set_up("ball", {"drop_height_m": 0.4}, {"angle_deg": 5.0}).swept(law).rows()
-    alone = strike(_set_up("ball", {"drop_height_m": 0.4, "angle_deg": 5.0}).scene(law))
-    whole = math.sqrt(2.0 * 9.81 * 0.4)
-    assert row["impact_speed_m_s"] == pytest.approx(whole * math.sin(math.radians(5.0)))
-    assert row["approach_tangential_m_s"] == pytest.approx(-whole * math.cos(math.radians(5.0)))
-    assert row["restitution"] == pytest.approx(alone.restitution, rel=1e-5)
-
-
 def test_a_swept_mass_carries_modes_of_its_own():
     law, fall = LAWS["fitted"], {"impact_speed_m_s": 1.0, "angle_deg": 40.0, "modes": 3}
     (row,) = _set_up("rod", fall, {"mass_kg": 0.02}).swept(law).rows()
