@@ -17,8 +17,8 @@ from ...dynamics.walk import layout as c
 LOADING, UNLOADING, FLIGHT = "loading", "unloading", "flight"
 
 # Places in the oracle's own state: position and angle of the body, rates, support, integrals.
-X, Y, TH, VX, VY, OM, W, WR, U, PN, PT, WN, WT, WS, WD, WC, WV, PA = range(18)
-Q = 18
+X, Y, TH, VX, VY, OM, W, WR, U, PN, PT, WN, WT, WS, WD, PA = range(16)
+Q = 16
 
 
 @dataclass(slots=True)
@@ -46,9 +46,20 @@ class Contact:
 
 
 class Motion:
-    """Equations of motion of one scene."""
+    """Equations of motion of one scene: Coulomb's friction with or without a spring, a support.
+
+    Raises
+    ------
+    ValueError
+        The scene ploughs, damps, radiates or stands on a plate, or its friction falls with speed.
+    """
 
     def __init__(self, scene: Scene, a: Arrays) -> None:
+        b, f = a.body, a.force
+        if any((b[c.PLOUGH], b[c.S_PLATE], f[fo.DAMPING], f[fo.RADIATION])) or (
+            b[c.MU_STATIC] != b[c.MU]
+        ):
+            raise ValueError("the oracle knows elastic-plastic contact and Coulomb's friction")
         self.a = a
         self.loading, self.radius, self.unloading, self.residual = scene.law.kernels
         # As Python: handing a kernel to compiled code costs far more than these few lines do.
@@ -59,10 +70,9 @@ class Motion:
         self.theta = math.atan2(self.sin0, self.cos0)
         self.tip = float(a.body[c.TIP])
         self.n = len(a.omega)
-        self.mu, self.mu_s = float(a.body[c.MU]), float(a.body[c.MU_STATIC])
+        self.mu = float(a.body[c.MU])
         self.spring = float(a.body[c.COMPLIANCE])
         self.compliant = math.isfinite(self.spring)
-        self.static = self.waves = 0.0
 
     def lever(self, z: Array) -> tuple[float, float]:
         """Vector from the centre of mass to the contact point, r_T - r_C."""
@@ -73,7 +83,7 @@ class Motion:
         )
 
     def motion(self, z: Array) -> tuple[float, float, float]:
-        """Penetration, its rate without a plate's, and the sliding velocity."""
+        """Penetration, its rate, and the sliding velocity."""
         rx, ry = self.lever(z)
         height = z[Y] + (ry + self.sin0 + self.tip)
         vx, vy = z[VX] - z[OM] * ry, z[VY] + z[OM] * rx
@@ -105,10 +115,10 @@ class Motion:
         low, _ = su.height(surface, surface[su.COUNT], surface[su.BEGIN] + self.place(z)[0])
         return float(surface[su.TIP_FLAT] + low - self.motion(z)[0])
 
-    def normal(self, z: Array, k: Contact) -> tuple[float, float, float]:
-        """Normal force, ploughing coefficient and the true rate of penetration."""
+    def normal(self, z: Array, k: Contact) -> tuple[float, float]:
+        """Normal force and the rate of penetration."""
         if k.phase == FLIGHT:
-            return 0.0, 0.0, self.motion(z)[1]
+            return 0.0, self.motion(z)[1]
         a = self.a
         d, rate, _ = self.pressed(z, k)
         if k.phase == LOADING:
@@ -116,30 +126,7 @@ class Motion:
             f = self.on_loading(self.loading, a.par, a.force, a.factors, d)
         else:
             f = self.on_unloading(self.unloading, a.par, k.branch, d)
-        plough = 0.0
-        if a.body[c.PLOUGH]:
-            peak = max(d, k.branch[0]) if k.phase == UNLOADING else d
-            radius = self.radius(a.par, d, peak) if d > 0.0 else 0.0
-            plough = a.body[c.PLOUGH] * 4.0 / (3.0 * math.pi) * radius / self.tip
-        self.static, self.waves = f, 0.0
-        if a.force[fo.RADIATION]:
-            self.waves = max(a.force[fo.RADIATION] * self.slope(d, k) ** 2 * rate, -f)
-            f += self.waves
-        f = max(f * (1.0 + a.force[fo.DAMPING] * rate), 0.0)
-        return f, plough, rate - a.body[c.S_PLATE] * f
-
-    def slope(self, d: float, k: Contact) -> float:
-        """Slope of the static force over the depth: waves take kappa (dF/dt)^2."""
-        a = self.a
-        if k.phase == LOADING:
-            low, high = fo.loading_window.py_func(d, k.low, k.high)
-            ends = [
-                self.on_loading(self.loading, a.par, a.force, a.factors, x) for x in (low, high)
-            ]
-        else:
-            low, high = fo.unloading_window.py_func(k.branch, d)
-            ends = [self.on_unloading(self.unloading, a.par, k.branch, x) for x in (low, high)]
-        return float((ends[1] - ends[0]) / (high - low)) if high > low else 0.0
+        return max(f, 0.0), rate
 
     def radius_now(self, depth: float, k: Contact) -> float:
         """Contact radius: the law's on loading, about the residual depth as Hertz's else."""
@@ -164,12 +151,7 @@ class Motion:
 
     def limit(self, z: Array, k: Contact) -> float:
         """Largest tangential force while the contact slides [N]."""
-        f, plough, _ = self.normal(z, k)
-        mu = self.mu
-        if self.mu_s != self.mu:
-            v = abs(self.motion(z)[2])
-            mu += (self.mu_s - mu) * math.exp(-v / self.a.body[c.MU_SPEED])
-        return (mu + plough) * f
+        return self.mu * self.normal(z, k)[0]
 
     def slip(self, z: Array, k: Contact, ahead: float) -> float:
         """Speed at which the surfaces slip: the bodies' less the spring's [m/s].
@@ -177,7 +159,7 @@ class Motion:
         The spring follows the friction limit, whose rate is a difference along the motion.
         """
         v = self.motion(z)[2]
-        depth = self.pressed(z, k)[0] + ahead * self.normal(z, k)[2]
+        depth = self.pressed(z, k)[0] + ahead * self.normal(z, k)[1]
         rate = self.derivative(z, k)
         first, second = z, z + ahead * rate
         # Look back where looking ahead would leave this stretch of the force.
@@ -214,7 +196,7 @@ class Motion:
 
     def forces(self, z: Array, k: Contact) -> tuple[float, float, float]:
         """Normal and tangential force on the striker, and the rate of penetration."""
-        f, _, rate = self.normal(z, k)
+        f, rate = self.normal(z, k)
         if k.phase == FLIGHT:
             return 0.0, 0.0, rate
         if k.sign == 0.0:
@@ -224,7 +206,6 @@ class Motion:
     def derivative(self, z: Array, k: Contact) -> Array:
         """Newton and Euler: m a = F_f i + (F_n - m g) j, I alpha = (r_T - r_C) x F."""
         f, ft, rate = self.forces(z, k)
-        static, waves = self.static, self.waves
         rx, ry = self.lever(z)
         b = self.a.body
         # a leaning surface pushes aside as well, through the tip's centre
@@ -238,15 +219,10 @@ class Motion:
             d[W] = z[WR]
             d[WR] = (f - b[c.S_STIFF] * z[W] - b[c.S_DAMP] * z[WR]) / b[c.S_MASS]
             d[WS] = f * z[WR]
-        else:
-            d[W] = b[c.S_PLATE] * f
-            d[WS] = f * d[W]
         slide = self.motion(z)[2]
         d[U], d[PN], d[PT], d[WN], d[WT] = slide, f, ft + aside, f * rate, -ft * slide
         if k.phase == FLIGHT:
             d[U] = 0.0  # slip is counted in contact
-        else:
-            d[WV], d[WC] = waves * rate, (f - static - waves) * rate
         if self.n:
             q, p = z[Q : Q + self.n], z[Q + self.n : Q + 2 * self.n]
             omega, psi = self.a.omega, self.a.psi
@@ -262,10 +238,9 @@ class Motion:
 
     def sign_from_rest(self, z: Array, k: Contact, small: float) -> float:
         """Sign of the sliding that follows rest; 0 when friction holds."""
-        f, plough, _ = self.normal(z, k)
-        f = max(f, small)
+        f = max(self.normal(z, k)[0], small)
         need, pull, _ = self.tangential(z, k, f)
-        return 0.0 if abs(need) <= (self.mu_s + plough) * f else math.copysign(1.0, pull)
+        return 0.0 if abs(need) <= self.mu * f else math.copysign(1.0, pull)
 
     def sign_at_touch(self, z: Array, k: Contact, ahead: float) -> float:
         """Sign of sliding as a contact that gives way sideways begins; 0 when it sticks."""

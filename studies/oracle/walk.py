@@ -27,13 +27,11 @@ from .motion import (
     UNLOADING,
     VX,
     VY,
-    WC,
     WD,
     WN,
     WR,
     WS,
     WT,
-    WV,
     Contact,
     Motion,
     Q,
@@ -78,7 +76,7 @@ class _Walk:
         self.d_ref = self.reference(reduced)
         self.t_ref = self.d_ref / self.v_n
         self.small = 1e-7 * reduced * self.v_n / self.t_ref
-        self.rubbing = mo.mu > 0.0 or mo.mu_s > 0.0 or b[c.PLOUGH] > 0.0
+        self.rubbing = mo.mu > 0.0
         k.sign = self.first_sign(z, k)
         k.side = self.side_of(z, k)
         out = np.full(c.N_OUT, np.nan)
@@ -155,14 +153,14 @@ class _Walk:
             return [("touch", lambda t, z: mo.clearance(z, self.surface))]
         found: list[tuple[str, Any]] = []
         if k.approaching:
-            found.append(("turn", lambda t, z: mo.normal(z, k)[2]))
+            found.append(("turn", lambda t, z: mo.normal(z, k)[1]))
             if k.phase == UNLOADING:
                 found.append(("reload", lambda t, z: k.branch[0] - depth(z)))
             elif math.isfinite(k.high):
                 found.append(("jump", lambda t, z: k.high - depth(z)))
         else:
             found.append(("part", lambda t, z: depth(z) - rest))
-            found.append(("return", lambda t, z: -mo.normal(z, k)[2]))
+            found.append(("return", lambda t, z: -mo.normal(z, k)[1]))
         if mo.compliant and k.side != 0.0:
             found.append(("reversal", lambda t, z: k.side * mo.motion(z)[2]))
         if k.sign != 0.0 and mo.compliant:
@@ -172,9 +170,9 @@ class _Walk:
         elif self.rubbing:
 
             def hold(t: float, z: Array) -> float:
-                f, plough, _ = mo.normal(z, k)
+                f, _ = mo.normal(z, k)
                 pull = mo.held(z, k) if mo.compliant else mo.tangential(z, k, f)[0]
-                gap = float((mo.mu_s + plough) * f - abs(pull))
+                gap = float(mo.mu * f - abs(pull))
                 if mo.compliant:
                     # over the forces: near the parting friction vanishes before the spring does
                     slack = k.approaching or z[-1] == 0.0
@@ -465,7 +463,7 @@ class _Walk:
         scale[TH], scale[OM] = self.d_ref / arm, self.v_n / arm
         scale[[PN, PT]] = mo.m * self.v_n
         scale[PA] = mo.m * self.v_n * arm
-        scale[[WN, WT, WS, WD, WC, WV]] = mo.m * self.v_n**2
+        scale[[WN, WT, WS, WD]] = mo.m * self.v_n**2
         root = math.sqrt(mo.m)
         scale[Q : Q + mo.n], scale[Q + mo.n : Q + 2 * mo.n] = self.d_ref * root, self.v_n * root
         return scale
@@ -535,9 +533,9 @@ class _Walk:
             "kinetic_before_J": kinetic(start),
             "kinetic_after_J": kinetic(z),
             "gravity_work_J": fallen,
-            "plastic_work_J": z[WN] - z[WC] - z[WV],
-            "damping_work_J": z[WC],
-            "radiated_J": z[WV],
+            "plastic_work_J": z[WN],
+            "damping_work_J": 0.0,
+            "radiated_J": 0.0,
             "modal_stored_J": modal - z[WD],
             "structural_loss_J": z[WD],
             "support_stored_J": held,

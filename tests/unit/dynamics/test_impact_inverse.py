@@ -1,4 +1,4 @@
-"""Chapter 5's inverse against the thesis's printed durations and the audit's exact alpha."""
+"""Chapter 5's inverse: where nothing slides, what is refused, the command."""
 
 from __future__ import annotations
 
@@ -13,33 +13,15 @@ from dentscope.dynamics.inverse import MeasuredScar, alpha, infer, mobility
 from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
 
 
-def test_durations_of_the_measured_rows() -> None:
-    """4.11, 1.38, 0.146 ms from the exact alpha; the thesis printed 4.30, 1.40, 0.10."""
-    rows = thesis_rows()[1]
-    for row, exact, printed in zip(rows, (4.11, 1.38, 0.146), (4.30, 1.40, 0.10), strict=True):
-        assert row.inferred.duration * 1e3 == pytest.approx(exact, rel=0.01)
-        assert row.printed_duration * 1e3 == pytest.approx(printed)
-        assert row.inferred.objections
-
-
-def test_alpha_of_the_audit() -> None:
-    rod = thesis_rod()
-    for angle, mu, expected in ((20, 0.20, -0.2427), (45, 0.13, -0.5523), (70, 0.10, -0.5005)):
-        assert alpha(rod, math.radians(angle), mu=mu) == pytest.approx(expected, abs=1e-4)
-    # No sliding at either end of the angles for mu = 0.5 (7.3 and 52 degrees), never for mu = 1.
+def test_where_the_tip_sticks_and_what_is_objected() -> None:
+    """No sliding at either end of the angles for mu = 0.5 (7.3 and 52), never for mu = 1."""
+    rod, rows = thesis_rows()
     for angle in (7.3, 52.0):
         assert alpha(rod, math.radians(angle), mu=0.5) == pytest.approx(0.0, abs=0.01)
     steepest = max(mobility(rod, math.radians(a)).stick_friction for a in range(1, 90))
     assert steepest == pytest.approx(0.77, abs=0.01)
-
-
-def test_mean_force_with_the_impulse() -> None:
-    """0.285, 0.656, 1.343 N s of a rigid rod (thesis-data, m = 0.4607 kg)."""
-    for row, impulse in zip(thesis_rows()[1], (0.285, 0.656, 1.343), strict=True):
-        assert row.inferred.impulse == pytest.approx(impulse, rel=5e-3)
-        assert row.inferred.mean_force * row.inferred.duration == pytest.approx(
-            row.inferred.impulse
-        )
+    for row in rows:
+        assert row.inferred.objections
         assert row.inferred.return_duration < row.inferred.duration
 
 

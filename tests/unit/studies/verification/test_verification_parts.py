@@ -163,8 +163,6 @@ def section(text, keyword):
 
 @pytest.mark.parametrize(("element", "nodes"), [("CAX4", 4), ("CAX8R", 8)])
 def test_the_deck_holds_the_mesh_the_surfaces_and_the_materials(deck, element, nodes):
-    from dataclasses import replace
-
     text = write_deck(replace(deck, element=element))
     mesh = deck.grid.mesh
     first = section(text, f"*ELEMENT, TYPE={element}, ELSET=ESPHERE")
@@ -178,8 +176,6 @@ def test_the_deck_holds_the_mesh_the_surfaces_and_the_materials(deck, element, n
 
 
 def test_middle_nodes_of_the_sphere_lie_on_it(deck):
-    from dataclasses import replace
-
     text = write_deck(replace(deck, element="CAX8R"))
     points = np.array([[float(x) for x in line.split(",")[1:3]]
                        for line in section(text, "*NODE, NSET=ALL")])  # fmt: skip
