@@ -74,12 +74,12 @@ def counted(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str
     """Return how many sides of each kind are right, and by what, in a sentence."""
     asked = [p for p in pairs if {"with", "without"} <= set(told.get(p.name, {}))]
     fair = [p for p in asked if told[p.name]["with"]["right"]]
-    named = sum(told[p.name]["with"]["verdict"] in NAMING for p in fair)
+    named = sum(told[p.name]["with"]["verdict"] in NAMING for p in fair if not p.audit)
     audited = sum(bool(p.audit) for p in fair)
     fresh = [p for p in asked if not p.known]
     clean = [told[p.name]["without"] for p in asked]
     return (
-        f"With the effect {len(fair)} of {len(asked)} verdicts are fair: {named} name a mechanism, "
+        f"With the effect {len(fair)} of {len(asked)} verdicts are fair: {named} name the cause, "
         f"{audited} audits contradict, {len(fair) - named - audited} rightly name nothing; of "
         f"those without a star {sum(p in fair for p in fresh)} of {len(fresh)}. Without it "
         f"{sum(entry['right'] for entry in clean)} of {len(clean)} are "

@@ -45,7 +45,7 @@ class Pair(InputTable):
     concealed: str
     fair: str
     named: tuple[str, ...] = Field(strict=False)
-    """Mechanisms of which one must lead, or be among the answers, where any is named."""
+    """Mechanisms and wrong numbers of which one must lead, or be an answer, where any is named."""
     verdicts: tuple[Said, ...] = Field(strict=False)
     """Verdicts without a name that are fair."""
     audit: str = ""

@@ -21,7 +21,7 @@ from .edits import write_side
 from .plan import ROOT, Pair
 
 OUTCOMES = ROOT / "data" / "interventions" / "outcomes.json"
-NAMING = ("missing-physics", "indistinguishable")
+NAMING = ("missing-physics", "indistinguishable", "wrong-input")
 _SHORT = 12
 
 
@@ -152,13 +152,18 @@ def _asked(folder: Path, out: Path, limit_s: float) -> dict[str, Any]:
     return {
         "set": digest,
         "verdict": verdict["verdict"],
-        "mechanisms": verdict["mechanisms"],
+        "mechanisms": [*verdict["mechanisms"], *_wrong(verdict)],
         "alternatives": verdict["alternatives"],
         "audit": [line for line in audit if line.startswith("contradiction")],
         "probabilities": dict(
             sorted(verdict["probabilities"].items(), key=lambda item: -item[1])[:4]
         ),
     }
+
+
+def _wrong(verdict: Mapping[str, Any]) -> list[str]:
+    """Numbers of the sheet that a verdict takes for wrong, by the names of its explanations."""
+    return [f"wrong-input:{one['key']}" for one in verdict.get("wrong_inputs", ())]
 
 
 def said(told: Mapping[str, Any]) -> str:
