@@ -160,7 +160,8 @@ def _of_rule(rule: Rule | LeftOut, fitted: Fitted) -> dict[str, Any]:
 
 
 def _of_verdict(verdict: dict[str, Any]) -> dict[str, Any]:
-    best = list(verdict.get("mechanisms", ()))
+    wrong = (str(one["key"]) for one in verdict.get("wrong_inputs", ()))
+    best = [*verdict.get("mechanisms", ()), *wrong]
     rest = [list(x) for x in verdict.get("alternatives", ()) if sorted(x) != sorted(best)]
     said = str(verdict.get("verdict", "undetermined"))
     named = said in ("missing-physics", "indistinguishable")

@@ -31,8 +31,13 @@ class Case:
 
     @property
     def best(self) -> frozenset[str]:
-        """Names of the best explanation."""
-        return frozenset(self.verdict.get("mechanisms", ()))
+        """Names of the best explanation, and of the numbers that it takes for wrong."""
+        return frozenset((*self.verdict.get("mechanisms", ()), *self.wrong))
+
+    @property
+    def wrong(self) -> list[str]:
+        """Keys of the numbers of the sheet that the best explanation takes for wrong."""
+        return [str(one["key"]) for one in self.verdict.get("wrong_inputs", ())]
 
     @property
     def reported(self) -> list[frozenset[str]]:

@@ -38,7 +38,6 @@ concealed, lets the diagnosis say what is missing, and only then looks at the tr
 
 * **Simulators.** An expanding cavity, and a row of yielding springs, each fitted pair by pair to
   quasi-static finite elements (force and elastic energy within 2 % rms, residual depth within 3 %).
-  32 of the last run's sets were of dynamic finite elements of bar and block, which are gone.
 * **Effects** mostly follow other equations than the diagnosis has: overstress with relaxation,
   Zerilli and Armstrong, Voce, a chain of beam elements in place of modes. Their rates have 0.5 to
   0.9 of the effect of finite elements with the same flow law, their hardening 1.3 to 1.5 times that

@@ -110,5 +110,5 @@ def third_world_lines(path: Path = FOUND) -> list[str]:
     return [
         intro, "", *score_rows(found | {"rows": [*own, *first]}), "",
         "The diagnosis less each:", "", *less_rows(found | {"rows": first}), "",
-        *verdict_lines(best), "", *remarks,
+        *verdict_lines(best, own[0], done), "", *remarks,
     ]  # fmt: skip

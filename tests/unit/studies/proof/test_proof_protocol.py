@@ -206,7 +206,8 @@ def test_scores_count_what_they_say():
     assert found["forced name, outside the library"].hits == 1
     assert found["undetermined or failed"].hits == 1
     assert found["90 % intervals cover"].of == 1
-    assert found["held-out score falls by, median above size 20"].value == pytest.approx(3.0)
+    falls = found["rms of left-out trials falls by, median above size 20"]
+    assert falls.value == pytest.approx(3.0)
     assert found["mean size of the set"].value == pytest.approx(1.5)
     table = score.confusion(cases)
     assert table["size-effect"] == {"size-effect": 1, "roughness": 1, "adequate": 1,
