@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
-from ..core.errors import InputError, InputErrors
+from ..core.errors import InputError
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import InputTable, Listed, parse_model, read_toml
 from ..core.material import Material, Pair
-from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_of
+from ..core.rig import FrictionTable, MaterialTable, value_of
 
 if TYPE_CHECKING:
     from ..fem import Accuracy, ContactProblem
@@ -24,8 +24,6 @@ Level = Literal["production", "quick", "smoke"]
 """How finely a pair is solved; smoke is coarse, for a first look."""
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
-_CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
-_AS_MEASURED = "true_stress_Pa"  # the same column in a recording set
 
 
 class CaseBody(MaterialTable):
@@ -127,40 +125,20 @@ class CaseFile(InputTable):
 
 
 def read_flow_curve(path: Path) -> FlowCurve:
-    """Read a table of true stress over plastic strain: columns plastic_strain and stress_Pa.
+    """Read a table of true stress over plastic strain, from 0 on: plastic_strain and stress_Pa.
 
     The second may be called true_stress_Pa, as in a recording set. Every mistake is a line with its
     row.
     """
-    from ..core.inputs.csv_table import Problems, numbers, read_text_table
+    from ..core.inputs.flow_curve import read_flow_curve as read_measured
 
-    problems = Problems(str(path))
-    table = read_text_table(path, (*_CURVE_COLUMNS, _AS_MEASURED), problems)
-    columns = list(_CURVE_COLUMNS)
-    if table is not None:
-        if _AS_MEASURED in table.columns and columns[1] not in table.columns:
-            columns[1] = _AS_MEASURED
-        for name in columns:
-            if name not in table.columns:
-                problems.add("missing", column=name, allowed=" and ".join(_CURVE_COLUMNS))
-    if table is None or problems.found:
-        raise InputErrors(tuple(problems.found))
-    strain, stress = (numbers(table, name, problems) for name in columns)
-    before = -math.inf
-    for row, p, s in zip(table.rows, strain, stress, strict=True):
-        if before == -math.inf and p != 0.0:
-            problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed="0 in the first row")
-        elif not p > before:
-            problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed=f"above {before:g}")
-        for name, value, known in zip(columns, (p, s), (STRAINS, STRENGTHS), strict=True):
-            if wanted := known.wanted(value):
-                problems.add(f"{value:g}", row=row, column=name, allowed=wanted)
-        before = p
-    if len(strain) < 2:
-        problems.add(f"{len(strain)} rows", allowed="two or more rows")
-    if problems.found:
-        raise InputErrors(tuple(problems.found))
-    return tabulated(strain, stress)
+    found = read_measured(path, ("plastic_strain", "stress_Pa"), also="true_stress_Pa")
+    if found.strain[0] != 0.0:
+        raise InputError(
+            f"{found.strain[0]:g}", source=str(path), key="row 2, column plastic_strain",
+            allowed="0 in the first row",
+        )  # fmt: skip
+    return tabulated(found.strain, found.stress)
 
 
 def read_pair(file: Path) -> tuple[CaseFile, Pair]:

@@ -19,7 +19,7 @@ from .csv_table import Problems, numbers, read_text_table
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
 """The last two are optional."""
 
-_RANGES = dict(zip(COLUMNS, (STRAINS, STRENGTHS), strict=False))
+_RANGES = (STRAINS, STRENGTHS, None, None)
 
 PROOF_STRAIN = 0.002
 
@@ -114,29 +114,34 @@ class MeasuredFlow:
         return csv_text(rows, header=columns)
 
 
-def read_flow_curve(path: Path) -> MeasuredFlow:
+def read_flow_curve(
+    path: Path, columns: tuple[str, ...] = COLUMNS, *, also: str = ""
+) -> MeasuredFlow:
     """Read a flow curve: `plastic_strain`, `true_stress_Pa`, optional rate and temperature.
 
-    Every mistake is a line with its row.
+    Every mistake is a line with its row. `columns` are names in that order, the first two needed;
+    `also` is another one of the second.
     """
     problems = Problems(str(path))
-    table = read_text_table(path, COLUMNS, problems)
+    table = read_text_table(path, (*columns, *filter(None, [also])), problems)
     if table is None:
         raise InputErrors(tuple(problems.found))
-    for name in COLUMNS[:2]:
+    if also in table.columns and columns[1] not in table.columns:
+        columns = (columns[0], also, *columns[2:])
+    for name in columns[:2]:
         if name not in table.columns:
-            problems.add("missing", row=1, column=name, allowed=", ".join(COLUMNS))
-    empty = np.full(len(table.rows), np.nan)
-    values = [numbers(table, n, problems) if n in table.columns else empty.copy() for n in COLUMNS]
-    for name, column in zip(COLUMNS, values, strict=True):
+            problems.add("missing", row=1, column=name, allowed=", ".join(columns))
+    values = [np.full(len(table.rows), np.nan) for _ in COLUMNS]
+    for k, (name, known) in enumerate(zip(columns, _RANGES, strict=False)):
         if name not in table.columns:
             continue
-        for row, cell, value in zip(table.rows, table.cells[name], column, strict=True):
+        values[k] = numbers(table, name, problems)
+        for row, cell, value in zip(table.rows, table.cells[name], values[k], strict=True):
             if not cell:
                 problems.add("empty", row=row, column=name, allowed="a number")
-            elif name in _RANGES and (wanted := _RANGES[name].wanted(value)):
+            elif known and (wanted := known.wanted(value)):
                 problems.add(f"{value:g}", row=row, column=name, allowed=wanted)
-            elif value < 0.0 or (value == 0.0 and name != COLUMNS[0]):
+            elif value < 0.0 or (value == 0.0 and k):
                 problems.add(f"{value:g}", row=row, column=name, allowed="above 0")
     if problems.found:
         raise InputErrors(tuple(problems.found))
