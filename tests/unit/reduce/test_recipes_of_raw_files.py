@@ -1,6 +1,6 @@
 """Recipes that turn many raw files into one set, and what they say of files that show nothing."""
 
-import importlib.util
+import runpy
 import shutil
 from pathlib import Path
 
@@ -15,11 +15,7 @@ measured = pytest.mark.skipif(not RAW.exists(), reason="the recordings are not h
 
 
 def _recipe(name):
-    path = ROOT / "data" / "recordings" / "recipes" / f"{name}.py"
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.recipe
+    return runpy.run_path(str(ROOT / "data" / "recordings" / "recipes" / f"{name}.py"))["recipe"]
 
 
 @measured

@@ -412,16 +412,6 @@ def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
     assert trials[0].note == "5"
 
 
-def test_the_picture_says_how_many_of_the_trials_it_shows(tmp_path, monkeypatch):
-    from dentscope.reduce.table import picture
-
-    drawn = []
-    monkeypatch.setattr(picture, "save", lambda made, path: drawn.append(made))
-    text = "load (N);drop height (cm);dent diameter (mm)\n;10;0,6\n;20;0,7\n900;;0,6\n"
-    read_text(tmp_path, text).reduced(tmp_path / "a.csv").draw(tmp_path / "a.png")
-    assert drawn[0].axes[0].get_title() == "2 of 3 trials"
-
-
 def test_errors_of_a_spreadsheet_are_told(tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
     book = openpyxl.Workbook()
