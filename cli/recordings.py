@@ -119,16 +119,12 @@ def _new_from(
     dry_run: bool,
 ) -> None:  # fmt: skip
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
-    from ..core.errors import InputError
+    from ..recordings.template import refuse_a_set
     from ..reduce.output.into_set import store
     from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_sheet
 
-    for name in ("set.toml", "trials.csv"):
-        if (folder / name).exists():
-            raise InputError(
-                "there is one already", source=str(folder / name), allowed="a new folder"
-            )
+    refuse_a_set(folder)
     found = read_sheet(sheet, columns, sheet=of_book)
     shape = found.shape if sphere is None else "sphere" if sphere else "rod"
     notes = list(found.left_out)

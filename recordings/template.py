@@ -91,13 +91,18 @@ def template_text(shape: Shape, name: str) -> str:
     return _HEAD.replace('"NAME"', json.dumps(name, ensure_ascii=False)) + _STRIKER[shape] + _TAIL
 
 
-def write_template(folder: Path, *, shape: Shape) -> None:
-    """Write set.toml, and trials.csv with its header line, into a folder that holds neither."""
+def refuse_a_set(folder: Path) -> None:
+    """Refuse a folder that holds a set.toml or a trials.csv."""
     for name in ("set.toml", "trials.csv"):
         if (folder / name).exists():
             raise InputError(
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
+
+
+def write_template(folder: Path, *, shape: Shape) -> None:
+    """Write set.toml, and trials.csv with its header line, into a folder that holds neither."""
+    refuse_a_set(folder)
     columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
     write_file(folder / "set.toml", template_text(shape, folder.resolve().name))
     write_file(folder / "trials.csv", ",".join(columns) + "\n")

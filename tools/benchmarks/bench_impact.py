@@ -9,10 +9,12 @@ python tools/benchmarks/bench_impact.py agree 1000 300 the same from number 300 
 from __future__ import annotations
 
 import math
+import runpy
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from dentscope.core import Material
@@ -23,7 +25,6 @@ from dentscope.dynamics import (
     Scene,
     Settings,
     Striker,
-    Support,
     arrays_of,
     impacts,
     rod_modes,
@@ -42,6 +43,8 @@ IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 FAST = Settings(tolerance=1e-7)
 EXACT = Settings(tolerance=3e-13)
+ROOT = Path(__file__).parents[2]
+DRAWN = runpy.run_path(str(ROOT / "tests/contract/test_impact_integrators.py"))
 
 
 def thesis_scene(law: str, angle: float, *, modes: int) -> Scene:
@@ -121,28 +124,13 @@ def best(run: Callable[[], object]) -> float:
 
 
 def random_scene(rng: np.random.Generator, number: int) -> Scene:
-    is_rod = rng.random() < 0.7
-    R = 10.0 ** rng.uniform(-3.0, -1.5)
-    striker = Striker(
-        mass=10.0 ** rng.uniform(-2.0, 0.0), tip_radius=R, radius=R,
-        length=rng.uniform(10.0, 40.0) * R if is_rod else 0.0,
-    )  # fmt: skip
-    approach = Approach(
-        10.0 ** rng.uniform(-1.0, 0.7),
-        rng.uniform(0.2, math.pi / 2.0) if is_rod else math.pi / 2.0,
-        tangential=float(rng.choice([0.0, rng.normal()])),
-        spin=float(rng.choice([0.0, 20.0 * rng.normal()])),
+    """That of the test, by each law in turn; every fourth contact gives way sideways."""
+    scene: Scene = DRAWN["random_scene"](rng, number)
+    stiffness = 0.82 if number % 4 == 3 else math.inf
+    return scene.with_(
+        law=list(LAWS.values())[number % len(LAWS)],
+        friction=replace(scene.friction, stiffness=stiffness),
     )
-    return scene_of(
-        list(LAWS.values())[number % len(LAWS)], sphere=STEEL, flat=IRON, striker=striker,
-        # every fourth contact gives way sideways
-        approach=approach,
-        friction=Friction(
-            float(rng.choice([0.0, 0.1, 0.3, 0.8])),
-            stiffness=0.82 if number % 4 == 3 else math.inf,
-        ),
-        support=Support(mass=1.0, stiffness=1e8) if rng.random() < 0.2 else Support(),
-    )  # fmt: skip
 
 
 def differences(scene: Scene, ours: Impact, theirs: Impact) -> dict[str, float]:

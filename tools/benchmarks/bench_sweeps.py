@@ -9,18 +9,14 @@ than 20 s of processor or 600 MB, or does not end as it should, is marked.
 from __future__ import annotations
 
 import os
+import runpy
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 SECONDS, BYTES = 20.0, 600e6
 
-_FILE = Path(__file__).parents[2] / "tests/physics/test_impact_sweeps_end.py"
-_SPEC = spec_from_file_location("sweeps", _FILE)
-assert _SPEC is not None
-assert _SPEC.loader is not None
-sweeps = module_from_spec(_SPEC)
-_SPEC.loader.exec_module(sweeps)
+_ROOT = Path(__file__).parents[2]
+SWEEPS = runpy.run_path(str(_ROOT / "tests/physics/test_impact_sweeps_end.py"))
 
 
 def took(case: tuple[str, str, float]) -> tuple[bool, float, float]:
@@ -28,7 +24,7 @@ def took(case: tuple[str, str, float]) -> tuple[bool, float, float]:
     child = os.fork()
     if child == 0:
         try:
-            sweeps.assert_swept(*case)
+            SWEEPS["assert_swept"](*case)
         except BaseException as error:
             sys.stdout.write(f"{case}: {error!r}"[:300] + "\n")
             sys.stdout.flush()
@@ -39,7 +35,7 @@ def took(case: tuple[str, str, float]) -> tuple[bool, float, float]:
 
 
 worst_s, worst_B, failed = 0.0, 0.0, 0
-for case in sweeps.CASES:
+for case in SWEEPS["CASES"]:
     good, seconds, memory = took(case)
     good = good and seconds < SECONDS and memory < BYTES
     failed += not good
@@ -47,6 +43,6 @@ for case in sweeps.CASES:
     mark = "" if good else "  FAILED"
     sys.stdout.write(f"{case}: {seconds:.1f} s, {memory / 1e6:.0f} MB{mark}\n")
     sys.stdout.flush()
-all_ = f"{len(sweeps.CASES)} sweeps, {failed} failed"
+all_ = f"{len(SWEEPS['CASES'])} sweeps, {failed} failed"
 sys.stdout.write(f"{all_}: at most {worst_s:.1f} s, {worst_B / 1e6:.0f} MB\n")
 sys.exit(failed > 0)
