@@ -70,7 +70,7 @@ ZHAO_MAIETTA_CHANG = PublishedLaw(
     name="zhao-maietta-chang",
     title="Zhao, Maietta and Chang 2000",
     source="J. Tribol. 122 (2000) 86",
-    equations="not in the thesis; docs/theory.md",
+    equations="none in the thesis",
     standing=Standing.PARTLY,
     domain=Domain(note="one asperity, flattening; H = 2.8 S and k = 0.4"),
     regime="flattening",
