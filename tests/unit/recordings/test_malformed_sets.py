@@ -74,8 +74,6 @@ CASES = {
     "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
     "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
     "unknown key": (toml("name =", "nmae ="), r"nmae: unknown key.*name"),
-    "nu too large": (toml("nu = 0.3", "nu = 0.5"), r"target\.nu: 0\.5 .*< 0\.5"),
-    "negative modulus": (toml("value = 2.0e11", "value = -1.0"), r"target\.E_Pa: .*from 1000 to"),
     "no gravity, and a height of fall": (
         {
             "toml": SET.replace("9.81", "0.0"),
@@ -92,9 +90,7 @@ CASES = {
     "no striker": (
         {"toml": SET.split("[strikers")[0]}, r"strikers: missing"
     ),
-    "other shape": (toml('shape = "rod"', 'shape = "cube"'), r"strikers\.rod\.shape: 'cube'"),
     "shape left out": (toml('shape = "rod"\n', ""), r"strikers\.rod\.shape: missing"),
-    "mass left out": (toml("mass_kg = 0.5\n", ""), r"strikers\.rod\.mass_kg: missing"),
     "modulus in GPa": (
         toml("value = 2.0e11", "value = 200"),
         r"target\.E_Pa: .*200 GPa would be 2e\+11",
@@ -104,15 +100,9 @@ CASES = {
         r"density_kg_m3: .*7\.85 g/cm\^3 would be 7850",
     ),
     "true for a number": (toml("mass_kg = 0.5", "mass_kg = true"), r"mass_kg: True .*a number"),
-    "text for a number": (toml("mass_kg = 0.5", 'mass_kg = "0.5"'), r"mass_kg: '0\.5' .*a number"),
     "400 digits": (toml("mass_kg = 0.5", f"mass_kg = {'9' * 400}"), r"mass_kg.*: 9+\.\.\.9"),
     "5000 digits": (toml("mass_kg = 0.5", f"mass_kg = {'9' * 5000}"), r"too many digits"),
     "mass 0": (toml("mass_kg = 0.5", "mass_kg = 0"), r"mass_kg: 0 .*from 1e-18 to"),
-    "rod without length": (toml("length_m = 0.3\n", ""), r"rod\.length_m: missing .*rod"),
-    "flat wider than tip": (
-        toml("length_m", "tip_flat_radius_m = 0.02\nlength_m"), r"tip_flat_radius_m: 0\.02 .*0\.01"
-    ),
-    "unknown noise": (toml("restitution =", "restituton ="), r"noise\.restituton: unknown key"),
     "noise 0": (toml("restitution = 0.01", "restitution = 0"), r"noise\.restitution: 0 "),
     "no noise at all": (
         {"toml": SET.replace("restitution = 0.01", "")},
