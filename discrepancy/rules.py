@@ -127,10 +127,6 @@ class DiagnosisRules:
         2, "the same of a mechanism and a wrong number [-]",
         "chosen: a quarter of what two mechanisms get",
     )  # fmt: skip
-    pair_places: int = rule(
-        48, "places of each mechanism in the search for pairs [-]",
-        "chosen: a pair takes their square",
-    )  # fmt: skip
     pair_step: float = rule(
         0.12,
         "step at which the mutual effect of two mechanisms is simulated [widths of the prior]",
@@ -167,10 +163,6 @@ class DiagnosisRules:
     load_repeats: float = rule(
         0.003, "relative scatter of a load where none is stated [-]",
         "half of class 1 of ISO 7500-1",
-    )  # fmt: skip
-    trace_points: int = rule(
-        200, "points of a simulated trace [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     trace_copies: int = rule(
         40, "copies of a curve with fresh noise [-]",
@@ -227,10 +219,6 @@ class DiagnosisRules:
     press_beyond: float = rule(
         3.0, "loads over those that a striker was pressed to, and one over them [-]",
         "half a decade",
-    )  # fmt: skip
-    rival_samples: int = rule(
-        12, "draws of each rival's parameters [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     noise_draws: int = rule(
         256, "draws of the noise of a proposed trial [-]",
@@ -407,10 +395,6 @@ class DiagnosisRules:
         0.4, "change below which the derivatives stay [prior deviations]",
         "straight within it",
     )  # fmt: skip
-    mark_loads: int = rule(
-        8, "presses that are tried with each striker [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     full: int = rule(
         3, "mechanisms that are fitted in full at the least [-]",
         "of 55 sets of another make mean ln p is -1.394 with 3 and 3 nats, -1.397 with 4 and 12",
@@ -459,14 +443,6 @@ class DiagnosisRules:
         2000, "the same with `confirm` [-]",
         "a level of 0.05 to a tenth",
     )  # fmt: skip
-    particles: int = rule(
-        160, "particles of a sampled evidence [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    moves: int = rule(
-        3, "moves of each at each temperature [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     sample_step: float = rule(
         0.5, "width of a move over that of the particles [-]",
         "chosen; no measurement is kept",
@@ -490,10 +466,6 @@ class DiagnosisRules:
     rim_spread: float = rule(
         0.03, "standard deviation of the same [-]",
         "within what those finite elements give",
-    )  # fmt: skip
-    null_grid: int = rule(
-        120, "depths of a null law [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     null_steps: float = rule(
         120.0, "time steps of a null impact to its turning point [-]",

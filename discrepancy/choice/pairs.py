@@ -20,6 +20,9 @@ from ..rank import Progress, Ranking, Screened, sharpened_leading
 from ..rules import RULES
 from ..unknowns.wrong_number import is_wrong
 
+# limit: places of each mechanism in the search for pairs [-]; a pair takes their square
+_PLACES = 48
+
 
 def with_pairs(
     simulator: Simulator, ranking: Ranking, *, progress: Progress = lambda _: None
@@ -58,7 +61,7 @@ def _leading_pairs(
 ) -> list[tuple[Screened, Screened, Array]]:
     """Return the best pairs by the sum of their effects, and where in their priors they fit."""
     linear, w = ranking.stated.linear, ranking.stated.linear.white(ranking.stated.residual)
-    thin = [np.arange(0, len(s.effect), max(len(s.effect) // RULES.pair_places, 1)) for s in among]
+    thin = [np.arange(0, len(s.effect), max(len(s.effect) // _PLACES, 1)) for s in among]
     whites = [linear.white(s.effect[t]) for s, t in zip(among, thin, strict=True)]
     scored = []
     own = [e @ w - 0.5 * np.sum(e**2, axis=1) for e in whites]

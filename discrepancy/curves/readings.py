@@ -25,6 +25,9 @@ from ...recordings import RecordingSet
 from ..rules import RULES
 from .reduction import Numbers, foot, from_profile, from_trace, roughness
 
+# limit: points of a simulated trace [-]; time
+_TRACED = 200
+
 _ACCURACY = Settings(tolerance=1e-7)
 
 
@@ -143,7 +146,7 @@ class _Model:
 
     @classmethod
     def of(cls, scene: Scene) -> _Model:
-        trace = traced(scene, _ACCURACY, points=RULES.trace_points)
+        trace = traced(scene, _ACCURACY, points=_TRACED)
         t, order = np.unique(trace.column("time_s"), return_index=True)
         e, impact = trace.impact.restitution, trace.impact
         leaving = e * scene.approach.speed

@@ -27,6 +27,9 @@ from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from ..unknowns.wrong_number import wrong_factors
 
+# limit: draws of each rival's parameters [-]; time
+_DRAWS = 12
+
 # limit: dimensions in which noise is drawn together [-]
 _DRAWN_TOGETHER = 32
 
@@ -119,7 +122,7 @@ def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
     if not fitted.mechanisms:
         return [Point(fitted.z)]
     places = fitted.grid.places()
-    chosen = rng.choice(len(places), size=RULES.rival_samples, p=fitted.weight)
+    chosen = rng.choice(len(places), size=_DRAWS, p=fitted.weight)
     return [Point(fitted.z, fitted.grid.values(places[i])) for i in chosen]
 
 

@@ -26,6 +26,9 @@ from ..rank import Progress
 from ..rules import RULES
 from .fit import Fit
 
+# limit: particles of a sampled evidence, and moves of each at each temperature [-]; time
+_PARTICLES, _MOVES = 160, 3
+
 
 @dataclass(eq=False)
 class _Swarm:
@@ -84,29 +87,29 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
         return np.asarray(np.nan_to_num(log_p - log_q + constant, nan=-1e9))
 
     n = len(lower)
-    index = rng.choice(len(places), size=RULES.particles, p=fitted.weight)
-    offset = rng.standard_normal((RULES.particles, n))
+    index = rng.choice(len(places), size=_PARTICLES, p=fitted.weight)
+    offset = rng.standard_normal((_PARTICLES, n))
     swarm = _Swarm(index, offset, log_ratio(index, offset))
     done, total = 0.0, 0.0
     while done < 1.0:
         step = _next_step(swarm.log_ratio, 1.0 - done)
         weight = step * swarm.log_ratio
-        total += float(logsumexp(weight)) - math.log(RULES.particles)
+        total += float(logsumexp(weight)) - math.log(_PARTICLES)
         done += step
         chosen = _resample(weight, rng)
         swarm = _Swarm(swarm.index[chosen], swarm.offset[chosen], swarm.log_ratio[chosen])
         if done >= 1.0:
             break
-        for move in range(RULES.moves):
+        for move in range(_MOVES):
             fresh = move == 0 and len(places) > 1
             index, offset = swarm.index, swarm.offset
             if fresh:
-                index = rng.choice(len(places), size=RULES.particles, p=fitted.weight)
+                index = rng.choice(len(places), size=_PARTICLES, p=fitted.weight)
             else:
-                kick = rng.standard_normal((RULES.particles, n))
+                kick = rng.standard_normal((_PARTICLES, n))
                 offset = math.sqrt(1.0 - RULES.sample_step**2) * offset + RULES.sample_step * kick
             ratio = log_ratio(index, offset)
-            take = np.log(rng.random(RULES.particles)) < done * (ratio - swarm.log_ratio)
+            take = np.log(rng.random(_PARTICLES)) < done * (ratio - swarm.log_ratio)
             swarm = _Swarm(
                 np.where(take, index, swarm.index),
                 np.where(take[:, None], offset, swarm.offset),

@@ -12,6 +12,9 @@ from ..comparison.problem import Problem
 from ..experiments.feasible import at_load, strikers_scenes
 from ..rules import RULES
 
+# limit: presses that are tried with each striker [-]; time
+_LOADS = 8
+
 # limit: plastic strains at which the stress is told [-]: of tension tests, to their usual end
 TOLD = (0.02, 0.05, 0.10)
 """Plastic strains at which the stress is told."""
@@ -32,7 +35,7 @@ def with_marks(problem: Problem, bench: tuple[float, float]) -> Problem:
     """Return the problem with presses that could be made behind its own cells."""
     conditions, new = list(problem.conditions), []
     for c, scene in strikers_scenes(problem):
-        for load in np.geomspace(*bench, RULES.mark_loads):
+        for load in np.geomspace(*bench, _LOADS):
             one = at_load(c, scene, float(f"{load:.2g}"))
             new += [(len(conditions), name) for name in _READ]
             conditions.append(one)

@@ -19,7 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Array, Mask
-from ..rules import RULES
+
+# limit: depths of a null law [-]; time
+_DEPTHS = 120
 
 KINDS = ("cut-off", "logarithmic", "series")
 
@@ -136,7 +138,7 @@ def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
 def curve(reference: NullReference, law: Draw) -> NullCurve:
     """Tabulate a law for one contact, levelled to the reference over its range of depths."""
     low, high = reference.low, reference.high
-    x = np.linspace(math.log(low) - 6.0, math.log(high) + 1.0, RULES.null_grid)
+    x = np.linspace(math.log(low) - 6.0, math.log(high) + 1.0, _DEPTHS)
     d = np.exp(x)
     known = np.log(reference.depth)
     base = np.interp(x, known, np.log(reference.force))
@@ -209,7 +211,7 @@ def _shape(reference: NullReference, law: Draw, d: Array) -> tuple[Array, float,
 
 def _in_series(hertz: Array, d: Array, first: float, stiffness: float) -> Array:
     """Force at which Hertz's depth and a dent's, softened at its start, add up to d."""
-    f = np.exp(np.linspace(math.log(hertz[0]), math.log(hertz[-1]), 4 * RULES.null_grid))
+    f = np.exp(np.linspace(math.log(hertz[0]), math.log(hertz[-1]), 4 * _DEPTHS))
     elastic = np.exp(np.interp(np.log(f), np.log(hertz), np.log(d)))
     start = float(np.interp(first, d, hertz))
     dent = f / stiffness * (1.0 - np.exp(-((f / (2.0 * start)) ** 0.7)))
