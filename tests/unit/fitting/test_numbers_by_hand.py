@@ -315,5 +315,5 @@ def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares
     monkeypatch.setattr(form_fit, "ripple_of", lambda _: (0.0, 0.0))
     monkeypatch.setattr(form_fit, "predict", lambda *_: seen)
     monkeypatch.setattr(form_fit, "given_back", lambda *_: np.exp([0.02]))
-    misfit = form_fit._misfit_of(table, turns, np.zeros(1), np.array([True]))
+    misfit = form_fit._misfit_of(table, turns)
     assert misfit(np.zeros(1)) == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 1.0])

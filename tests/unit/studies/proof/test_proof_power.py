@@ -51,6 +51,6 @@ def test_the_page_of_a_kept_run_has_plan_power_and_rules(tmp_path):
     assert row in (tmp_path / "proof-details.md").read_text()
     assert "| less | in front, points |" in text
     assert "| BIC | 100.0 (100.0 to 100.0) | 0.016 | 6.11 (6.11 to 6.11) |" in text
-    assert "0.3 in mean ln p: met (with an interval above 0 alone, as the plan has it: met)" in text
+    assert "Primary mark, 4 points in front: met. 0.2 in mean ln p: met." in text
     assert "| false alarms on nulls | detected, size above 10 |" in text
     assert (tmp_path / "pictures" / power.PICTURE).stat().st_size > 10_000
