@@ -64,9 +64,9 @@ def _finding(v: Verdict) -> str:
             f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}.{beside}"
         )
     if v.verdict == "indistinguishable":
-        named = ["+".join(a) for a in (v.mechanisms, *v.alternatives)]
+        shared = [f.name for f in v.choice.members]
         rival = joined(
-            [f"{explanation(n, v.titles)} ({percent(v.probabilities[n])})" for n in named], "or"
+            [f"{explanation(n, v.titles)} ({percent(v.probabilities[n])})" for n in shared], "or"
         )
         return f"Something is missing, and these share the probability: {rival}.{_family(v)}"
     if v.verdict == OUTSIDE and v.choice.alike:

@@ -59,7 +59,7 @@ def asked_of(folder: Path) -> list[Asked]:
         return [Asked(p, _truth(folder / "truths", p.name)) for p in places]
     try:
         cases = {c.name: c for c in open_run(folder)}
-        order = list(ledger.of("verdict"))
+        order = [name for name in ledger.of("verdict") if name in cases]
     except SealBroken as broken:
         raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
     return [

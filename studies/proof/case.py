@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import beta
 
 from .same_meaning import comparable
-from .seal import Ledger, check
+from .seal import Ledger, check, sealed_twice
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,9 @@ class Case:
 def open_run(run: Path) -> list[Case]:
     """Check the seals of every set that has a verdict, and read truth and verdict.
 
+    Sets that two processes sealed are left out, and their truths stay closed; sealed again after
+    it was opened, a set is a broken seal.
+
     Raises
     ------
     SealBroken
@@ -84,9 +87,10 @@ def open_run(run: Path) -> list[Case]:
     ledger = Ledger(run / "ledger.jsonl")
     verdicts, opened = ledger.of("verdict"), ledger.of("opened")
     cases = []
-    for name in sorted(verdicts):
+    once = sorted(set(verdicts) - (sealed_twice(ledger) - set(opened)))
+    for name in once:
         check(ledger, run, name)
-    for name in sorted(verdicts):
+    for name in once:
         if name not in opened:
             ledger.add(event="opened", set=name)
         event = verdicts[name]

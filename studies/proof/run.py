@@ -14,14 +14,16 @@ import shutil
 import signal
 import tempfile
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
 from itertools import islice, takewhile
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 from ...core.errors import InputError
+from ...core.output import in_use
 from ...core.processes.children import die_with, keep_current_folder_out
 from .apart import answer
 from .generators.folder import write_set
@@ -141,13 +143,37 @@ def carry_on(
     ValueError
         The source tree changed since the run began; a new run draws new truths.
     InputError
-        The plan is not the one that the run began with.
+        The plan is not the one that the run began with; or another process goes on with it.
     """
     tree = tree_hash(ROOT)
-    ledger = _ledger_of(run, which, tree)
+    with alone(run):
+        ledger = _ledger_of(run, which, tree)
+        todo = islice(entries_to_do(ledger, which, tree), most)
+        end = time.monotonic() + 3600.0 * hours
+        yield from _carry_on(run, tree, ledger, todo, workers, at_once, end, limit_s)
+
+
+@contextmanager
+def alone(run: Path) -> Iterator[None]:
+    """Keep a run for oneself: two processes would seal a set twice.
+
+    Raises
+    ------
+    InputError
+        Another process goes on with it.
+    """
+    with in_use(run) as before:
+        if before:
+            raise InputError("another process goes on with this run", source=str(run),
+                             allowed="one at a time")  # fmt: skip
+        yield
+
+
+def _carry_on(
+    run: Path, tree: str, ledger: Ledger, todo: Iterator[Entry], workers: Executor, at_once: int,
+    end: float, limit_s: float,
+) -> Generator[tuple[str, dict[str, Any]]]:  # fmt: skip
     sealed = set(ledger.of("truth"))
-    todo = islice(entries_to_do(ledger, which, tree), most)
-    end = time.monotonic() + 3600.0 * hours
     waiting: set[Future[dict[str, Any]]] = set()
     while True:
         while len(waiting) < at_once and time.monotonic() < end and (entry := next(todo, None)):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +110,12 @@ class Ledger:
 
 def _chain(before: str, event: dict[str, Any]) -> str:
     return hashlib.sha256((before + json.dumps(event, sort_keys=True)).encode()).hexdigest()
+
+
+def sealed_twice(ledger: Ledger) -> set[str]:
+    """Sets whose truth or verdict was sealed more than once; the other event tells nothing then."""
+    counts = Counter((e["event"], e.get("set", "")) for e in ledger.events())
+    return {name for (kind, name), n in counts.items() if kind in ("truth", "verdict") and n > 1}
 
 
 def check(ledger: Ledger, run: Path, name: str) -> None:

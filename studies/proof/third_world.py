@@ -22,7 +22,7 @@ from ..third_world.effects import EFFECTS, OUTSIDE
 from ..third_world.sheet import write
 from .case import open_run
 from .rivals import read_lines
-from .run import ROOT, diagnose, local_workers
+from .run import ROOT, alone, diagnose, local_workers
 from .seal import Ledger, digest_of, tree_hash
 from .third_world_page import keep, kept
 
@@ -74,7 +74,11 @@ def conceal(truth: Truth, run: Path, name: str) -> dict[str, Any]:
 
 def carry_on(run: Path, *, limit_s: float = 900.0) -> Iterator[tuple[str, dict[str, Any]]]:
     """Go on with a run: draw and seal a set, diagnose it, seal the verdict, in random order."""
-    run.mkdir(parents=True, exist_ok=True)
+    with alone(run):
+        yield from _carry_on(run, limit_s)
+
+
+def _carry_on(run: Path, limit_s: float) -> Iterator[tuple[str, dict[str, Any]]]:
     ledger = Ledger(run / "ledger.jsonl")
     plan, tree = digest_of(PLAN), tree_hash(ROOT)
     begun = ledger.of("begin").get("")

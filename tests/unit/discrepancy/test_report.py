@@ -126,11 +126,18 @@ def test_a_mechanism_of_ones_own_is_told_in_its_own_words() -> None:
     v = said("missing-physics", 0.05, Located((), (), 3.0))
     v.mechanisms, v.inclusion = ("sticky-tape",), {"sticky-tape": 0.9}
     assert headline(v).startswith("The simulation lacks this: a tape holds the tip back (sticky-")
-    v.verdict, v.alternatives = "indistinguishable", (("work-hardening",),)
-    v.probabilities = {"sticky-tape": 0.62, "outside-library": 0.28, "work-hardening": 0.1}
+
+
+def test_what_shares_the_probability_is_told_wrong_numbers_too() -> None:
+    v = said("indistinguishable", 0.05, Located((), (), 3.0))
+    number = "wrong-input:target.Sy_Pa"
+    v.probabilities = {number: 0.4, "sticky-tape": 0.3, "work-hardening": 0.1}
+    v.titles[number] = "the stated strength of the flat is wrong"
+    v.mechanisms, v.choice.members = (), tuple(SimpleNamespace(name=n) for n in v.probabilities)
     assert headline(v) == (
-        "Something is missing, and these share the probability: a tape holds the tip back (62 %) "
-        "or the metal hardens as it is deformed (10 %)."
+        "Something is missing, and these share the probability: the stated strength of the flat is "
+        "wrong (40 %), a tape holds the tip back (30 %) or the metal hardens as it is deformed "
+        "(10 %)."
     )
 
 
