@@ -95,6 +95,10 @@ class InputErrors(InputError):
         ValueError.__init__(self, "\n".join(str(error) for error in errors))
         self.message, self.source, self.key, self.allowed = str(self), "", "", ""
 
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """Cross to another process with every mistake."""
+        return InputErrors, (self.errors,)
+
 
 def missing_extra(what: str, extra: str) -> InputError:
     """Return the line that says which optional packages something needs."""

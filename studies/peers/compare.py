@@ -127,17 +127,16 @@ def line_of(asked: Asked, source: str) -> dict[str, Any]:
 
     Where the fits fail, every rule is undetermined, as a diagnosis without a verdict is.
     """
-    recordings = read(asked.place)
     begun = time.process_time()
     verdict, seconds = asked.verdict, asked.seconds
     if verdict is None:
-        verdict = diagnose(recordings).to_dict()
+        verdict = diagnose(read(asked.place)).to_dict()
         seconds = time.process_time() - begun
     between = time.process_time()
     said = {DIAGNOSIS: _of_verdict(verdict)} | dict.fromkeys(RULES, _of_verdict({}))
     acting, failed = 0, ""
     try:
-        fitted = fitted_of(recordings)
+        fitted = fitted_of(read(asked.place))
     except (InputError, np.linalg.LinAlgError) as error:
         failed = str(error)
     else:

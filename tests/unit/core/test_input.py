@@ -1,6 +1,7 @@
 """Mistakes in input come as one line each; identities do not depend on how things are written."""
 
 import math
+import pickle
 
 import pytest
 from dentscope.core import Ending, InputError, InputErrors, Material, Outcome, Pair
@@ -74,3 +75,10 @@ def test_outcome_reads_as_a_sentence():
     outcome = Outcome(Ending.TIME_LIMIT, "stopped after 3 s.", "Allow more.")
     assert str(outcome) == "time-limit: stopped after 3 s. Allow more."
     assert not outcome.completed
+
+
+def test_mistakes_cross_to_another_process_one_by_one():
+    one = InputError("-1 is negative", source="pair.toml", key="E_Pa", allowed="above 0")
+    both = pickle.loads(pickle.dumps(InputErrors((one, InputError("no such law", key="law")))))
+    assert str(both) == "pair.toml: E_Pa: -1 is negative (allowed: above 0)\nlaw: no such law"
+    assert [error.key for error in both.errors] == ["E_Pa", "law"]
