@@ -17,6 +17,7 @@ SIZES = (0.0, 5.0, 10.0, 20.0, 40.0, math.inf)
 """Edges of the classes of size."""
 
 _TICKS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
+_FAR = 500.0  # beyond it a size tells no more
 
 PICTURE = "proof-power.png"
 
@@ -92,9 +93,10 @@ def picture(rows: Sequence[Shown], path: Path) -> Path:
         ("found", "0.55", "o", [r for r in rows if r.detected and not r.right]),
         ("not found", "C3", "x", [r for r in rows if not r.detected]),
     ):
-        right.scatter([r.size for r in own], [names.index(r.mechanism) for r in own], s=18,
-                      c=colour, marker=marker, label=label, alpha=0.8, linewidths=1.0)  # fmt: skip
-    right.set(xscale="log", xlabel="size of the effect")
+        right.scatter([min(r.size, _FAR) for r in own], [names.index(r.mechanism) for r in own],
+                      s=18, c=colour, marker=marker, label=label, alpha=0.8,
+                      linewidths=1.0)  # fmt: skip
+    right.set(xscale="log", xlabel=f"size of the effect, or {_FAR:g} and more")
     right.set_yticks(range(len(names)), names, fontsize=7)
     right.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     for axis in (left, right):

@@ -135,7 +135,9 @@ def as_stated(rng: np.random.Generator, rig: Rig, names: Sequence[str]) -> Rig:
     gauge = {"permanent_depth_m": 0.04} if rng.random() < _OTHER else {}
     fluid = float(np.exp(rng.uniform(*np.log((0.05, 1.0)))))
     plate = 2.0 * tip_of(rig) * float(np.exp(rng.uniform(*np.log((0.4, 1.6)))))
-    block = {"thickness_m": 0.2} if rng.random() < _OTHER else {}
+    # what moves on its support is lighter than a block
+    moves = rig.bench in EFFECTS["support-compliance"].benches
+    block = {"thickness_m": 0.2} if rng.random() < _OTHER and not moves else {}
     thin = tells("half-space-waves", _DECOYS) and rig.bench != "elastic"
     return replace(
         rig, heights=rig.heights or tells("impact-speed-loss", _HEIGHTS),

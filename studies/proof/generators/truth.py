@@ -186,7 +186,8 @@ def told(rng: np.random.Generator, rig: Rig, names: tuple[str, ...]) -> Rig:
 
     A film is named only where a liquid is told, a plate's waves where a thickness is, what an
     approach loses where heights are; where these do not act, a sheet tells them all the same: the
-    plate lies on a bed that holds it, the liquid was wiped off.
+    plate lies on a bed that holds it, the liquid was wiped off. No block is told on a bench that
+    may move on its support: what moves there is lighter.
     """
 
     def tells(effect: str, share: float) -> bool:
@@ -197,7 +198,8 @@ def told(rng: np.random.Generator, rig: Rig, names: tuple[str, ...]) -> Rig:
     wet = tells("squeeze-film", DECOYS) and rig.bench in EFFECTS["squeeze-film"].benches
     thin = yields and rig.bench in EFFECTS["half-space-waves"].benches
     plate = {"thickness_m": float(np.exp(rng.uniform(*np.log(_THIN))))}
-    block = {"thickness_m": BLOCK} if rng.random() < 0.5 else {}
+    moves = rig.bench in EFFECTS["support-compliance"].benches
+    block = {"thickness_m": BLOCK} if rng.random() < 0.5 and not moves else {}
     viscosity = float(np.exp(rng.uniform(*np.log(_LIQUID))))
     thickness = plate if tells("half-space-waves", DECOYS) and thin else block
     return replace(rig, drop=drop, told=rig.told | thickness, liquid=viscosity if wet else 0.0)
