@@ -188,11 +188,11 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
     n = found["sets"]
     lines = [
         "", "### Against simple rules", "",
-        f"On {n} of the sets, {found['nulls']} of them nulls and {found['outside']} outside, those "
-        "with a wrong mass or strength left out (`dentscope proof peers`). *In front*: the truth "
-        "is the most probable of all. *Nulls*: named, and with those called outside. *Forced*: "
-        "names of what is outside. *s*: processor seconds, of all rules together. The rules are "
-        f"those of the [plan](proof-plan.md); their fits failed on {found['failed']}.", "",
+        f"On {n} of the sets, {found['nulls']} of them nulls and {found['outside']} outside "
+        "(`dentscope proof peers`). *In front*: the truth is the most probable of all. *Nulls*: "
+        "named, and with those called outside. *Forced*: names of what is outside. *s*: processor "
+        "seconds, of all rules together. The rules are those of the [plan](proof-plan.md); their "
+        f"fits failed on {found['failed']}.", "",
         *score_rows(found),
         "", "The diagnosis less each of the three best, on the same sets, with 95 % intervals:", "",
         *less_rows(found | {"rows": best_rules(found)}), "",
