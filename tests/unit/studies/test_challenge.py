@@ -262,19 +262,20 @@ def test_a_random_asker_is_scored_by_the_page(game, monkeypatch, capsys) -> None
     assert (len(found), found.sessions.max()) == (25, 2.0)
 
 
-def test_what_is_answered_hangs_on_secret_and_trial_alone(game, tmp_path) -> None:
+def test_what_is_answered_hangs_on_secret_and_trial_alone(tmp_path) -> None:
+    game, again = tmp_path / "one" / "game", tmp_path / "two" / "game"
+    for place in (game, again):
+        ask.deal(place, place.with_name("game-judge"), 2, seed=5)
     text = "striker,angle_deg,impact_speed_m_s\n{},{:g},{:g}\n"
     found = recordings.read(game / "sets" / "asked-002")
     first = found.trials
     row = text.format(first.striker[0], first.angle_deg[0], found.approach.normal[0])
-    again = tmp_path / "game"
-    ask.deal(again, tmp_path / "game-judge", 2, seed=5)
     asked(again, "asked-002", text.format(first.striker[-1], first.angle_deg[-1],
                                           found.approach.normal[-1]))  # fmt: skip
     one, two = asked(game, "asked-002", row)[1], asked(again, "asked-002", row)[1]
     # the number of the trial apart
     assert one[4:] == two[4:]
-    concealed = {n for pair in ask.truths(tmp_path / "game-judge").values() for n in pair}
+    concealed = {n for pair in ask.truths(game.with_name("game-judge")).values() for n in pair}
     texts = "".join(p.read_text() for p in (game / "sets").rglob("*.*"))
     assert not any(name in texts for name in concealed)
 
