@@ -113,7 +113,7 @@ def _chain(before: str, event: dict[str, Any]) -> str:
 
 
 def sealed_twice(ledger: Ledger) -> set[str]:
-    """Sets whose truth or verdict was sealed more than once; the other event tells nothing then."""
+    """Sets whose truth or verdict is sealed more than once, as by two processes at one run."""
     counts = Counter((e["event"], e.get("set", "")) for e in ledger.events())
     return {name for (kind, name), n in counts.items() if kind in ("truth", "verdict") and n > 1}
 
