@@ -86,10 +86,7 @@ def _judged(curve: Mapping[str, Array]) -> tuple[Array, Array, Array]:
 def largest_step(depth: Array, values: Array) -> float:
     """Largest step of positive values along a curve, over the local value.
 
-    Parameters
-    ----------
-    depth, values
-        Shape (n,), both positive.
+    `depth`, `values`: shape (n,), both positive.
 
     Examples
     --------

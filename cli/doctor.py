@@ -24,16 +24,8 @@ EXIT_ENVIRONMENT = 1
 class EnvironmentFinding:
     """One thing looked at.
 
-    Parameters
-    ----------
-    name, state
-        What was looked at and what was found.
-    fine
-        Whether it works.
-    needed
-        Whether the solver cannot run without it.
-    remedy
-        What to do when it does not work.
+    `name`, `state`: what was looked at and what was found; `fine`: whether it works; `needed`:
+    whether the solver cannot run without it; `remedy`: what to do when it does not work.
     """
 
     name: str

@@ -17,18 +17,11 @@ def speeds_at_touch(
     A rod's angle is that of its axis, and it falls straight; a sphere's is that of its velocity,
     against +x.
 
-    Parameters
-    ----------
-    speed
-        Stated normal speed, shape (...) [m/s]; NaN where the fall gives it.
-    height
-        Of the fall, shape (...) [m].
-    angle
-        From the flat, shape (...) [rad].
-    rod
-        Whether the striker is a rod, shape (...).
-    gravity
-        [m/s^2].
+    - `speed`: stated normal speed, shape (...) [m/s]; NaN where the fall gives it.
+    - `height`: of the fall, shape (...) [m].
+    - `angle`: from the flat, shape (...) [rad].
+    - `rod`: whether the striker is a rod, shape (...).
+    - `gravity`: [m/s^2].
 
     Examples
     --------

@@ -20,10 +20,7 @@ Mask = NDArray[np.bool_]
 def numbers(given: ArrayLike, *, key: str, allowed: str, source: str = "") -> Array:
     """Return numbers, one or several, as an array of their shape.
 
-    Raises
-    ------
-    InputError
-        Text such as "20 um", `True`, or anything else that is no number.
+    Raises `InputError`: text such as "20 um", `True`, or anything else that is no number.
 
     Examples
     --------

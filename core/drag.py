@@ -34,12 +34,7 @@ class Fluid(NamedTuple):
 def air(temperature: float = 293.15, pressure: float = 101325.0) -> Fluid:
     """Return dry air, an ideal gas, valid from 200 to 1000 K near atmospheric pressure.
 
-    Parameters
-    ----------
-    temperature
-        [K].
-    pressure
-        [Pa].
+    `temperature`: [K]; `pressure`: [Pa].
 
     References
     ----------
@@ -65,10 +60,7 @@ def drag_coefficient(reynolds: float) -> float:
     `HIGHEST_REYNOLDS` the drag crisis of a very smooth sphere in a quiet stream follows, with a
     jump at Re = 4e5.
 
-    Parameters
-    ----------
-    reynolds
-        Speed times diameter over kinematic viscosity.
+    `reynolds`: speed times diameter over kinematic viscosity.
 
     References
     ----------
@@ -105,14 +97,8 @@ def drag_coefficient(reynolds: float) -> float:
 def drag_force(speed: float, diameter: float, density: float, viscosity: float) -> float:
     """Return the drag of a sphere in steady motion, F = C_D π d² ρ v²/8, with the sign of `speed`.
 
-    Parameters
-    ----------
-    speed
-        Of the sphere relative to the fluid [m/s].
-    diameter
-        Of the sphere [m].
-    density, viscosity
-        Of the fluid [kg/m³, Pa s].
+    `speed`: of the sphere relative to the fluid [m/s]; `diameter`: of the sphere [m]; `density`,
+    `viscosity`: of the fluid [kg/m³, Pa s].
     """
     rate = abs(speed) * diameter * density / viscosity
     if rate < 1e-12:
@@ -145,12 +131,7 @@ def rod_drag_across(reynolds: float, slenderness: float) -> float:
 
     The curve of an endless cylinder, 1 + 10 Re^(-2/3), times the share that a finite one keeps.
 
-    Parameters
-    ----------
-    reynolds
-        Speed times diameter over kinematic viscosity.
-    slenderness
-        Length over diameter.
+    `reynolds`: speed times diameter over kinematic viscosity; `slenderness`: length over diameter.
 
     References
     ----------

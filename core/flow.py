@@ -27,19 +27,11 @@ FLOW_LAST = 10.0
 class FlowCurve:
     """True stress over equivalent plastic strain; constant beyond the last row.
 
-    Parameters
-    ----------
-    strain
-        Equivalent plastic strains, increasing from 0 [-].
-    stress
-        Flow stress there [Pa].
-    slope
-        Its slope there [Pa].
+    `strain`: equivalent plastic strains, increasing from 0 [-]; `stress`: flow stress there [Pa];
+    `slope`: its slope there [Pa].
 
-    Raises
-    ------
-    InputError
-        The table does not begin at 0, does not increase, or holds a stress that is not positive.
+    Raises `InputError`: the table does not begin at 0, does not increase, or holds a stress that is
+    not positive.
     """
 
     strain: tuple[float, ...]
@@ -160,18 +152,11 @@ def _written(
 class Rate:
     """How the flow stress rises with the rate r of plastic strain.
 
-    Parameters
-    ----------
-    law
-        `cowper-symonds`: times 1 + (r/reference)^(1/number). `johnson-cook`: times
-        1 + number ln(r/reference), 1 below the reference. `overstress`: plus
-        stress (r/reference)^number.
-    reference
-        [1/s].
-    number
-        q, C or m of the law [-].
-    stress
-        Overstress at the reference rate [Pa]; of that law only.
+    - `law`: `cowper-symonds`: times 1 + (r/reference)^(1/number). `johnson-cook`: times 1 + number
+      ln(r/reference), 1 below the reference. `overstress`: plus stress (r/reference)^number.
+    - `reference`: [1/s].
+    - `number`: q, C or m of the law [-].
+    - `stress`: overstress at the reference rate [Pa]; of that law only.
 
     References
     ----------
@@ -189,16 +174,10 @@ class Rate:
 class Heating:
     """Adiabatic heating, and how it softens: times 1 - (T_rise/range)^exponent, 0.01 at least.
 
-    Parameters
-    ----------
-    fraction
-        Part of the plastic work that heats (Taylor and Quinney) [-].
-    capacity
-        Heat capacity of a volume [J/(m^3 K)].
-    range
-        Rise of temperature at which no strength is left, melting over the start [K].
-    exponent
-        1 for a linear law.
+    - `fraction`: part of the plastic work that heats (Taylor and Quinney) [-].
+    - `capacity`: heat capacity of a volume [J/(m^3 K)].
+    - `range`: rise of temperature at which no strength is left, melting over the start [K].
+    - `exponent`: 1 for a linear law.
     """
 
     fraction: float

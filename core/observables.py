@@ -21,32 +21,20 @@ RELATIVE_SUFFIX = "_relative"
 class Observable:
     """One observable.
 
-    Parameters
-    ----------
-    column
-        Its name in files, SI unit included: a column of trials.csv and a key of `[noise]`.
-    label, meaning
-        Two or three words for lists and axes; one sentence for the documentation.
-    instrument
-        What measures it: a camera, markers, light gates or sound (`motion`), a force sensor, a
-        testing machine or an electric contact (`force`), a scan of the crater (`surface`).
-    phase
-        The phase of the impact that shapes it most.
-    low, zero
-        Smallest value, and whether zero itself is accepted where that is 0.
-    log
-        Whether it is compared as a logarithm.
-    power
-        D ln y / D ln v of a fully plastic contact, good enough between repeats of one speed.
-    simulated
-        The number of a simulated impact that it is compared with; empty if several make it.
-    in_trials
-        Whether trials.csv has the column; else only a curve gives it.
-    usual_noise
-        Relative standard deviation of a usual instrument; 0 for what is not proposed as a further
-        measurement.
-    of
-        What shows it: an impact, a quasi-static press, or either.
+    - `column`: its name in files, SI unit included: a column of trials.csv and a key of `[noise]`.
+    - `label`, `meaning`: two or three words for lists and axes; one sentence for the documentation.
+    - `instrument`: what measures it: a camera, markers, light gates or sound (`motion`), a force
+      sensor, a testing machine or an electric contact (`force`), a scan of the crater (`surface`).
+    - `phase`: the phase of the impact that shapes it most.
+    - `low`, `zero`: smallest value, and whether zero itself is accepted where that is 0.
+    - `log`: whether it is compared as a logarithm.
+    - `power`: D ln y / D ln v of a fully plastic contact, good enough between repeats of one speed.
+    - `simulated`: the number of a simulated impact that it is compared with; empty if several make
+      it.
+    - `in_trials`: whether trials.csv has the column; else only a curve gives it.
+    - `usual_noise`: relative standard deviation of a usual instrument; 0 for what is not proposed
+      as a further measurement.
+    - `of`: what shows it: an impact, a quasi-static press, or either.
     """
 
     column: str

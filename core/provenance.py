@@ -22,10 +22,7 @@ def canonical_json(value: Any) -> str:
 
     Floats are written with `float.hex`, keys are sorted, tuples become lists.
 
-    Raises
-    ------
-    TypeError
-        For a value that has no canonical form.
+    Raises `TypeError`: for a value that has no canonical form.
 
     Examples
     --------

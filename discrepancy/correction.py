@@ -31,14 +31,8 @@ _CORRECTIONS_SHOWN = 12
 class Correction:
     """Factors on the force law over the depth.
 
-    Parameters
-    ----------
-    phase
-        `loading` or `unloading`.
-    depth_over_R
-        (k,) indentation over the tip's radius.
-    factor, low, high
-        (k,) and the 90 % band.
+    `phase`: `loading` or `unloading`; `depth_over_R`: (k,) indentation over the tip's radius;
+    `factor`, `low`, `high`: (k,) and the 90 % band.
     """
 
     phase: str
@@ -55,15 +49,7 @@ def widened(problem: Problem, fitted: Fit) -> Linear:
 
 
 def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
-    """Return the corrections of loading and unloading over the depths that a set reaches.
-
-    Parameters
-    ----------
-    simulator
-        The problem.
-    base
-        Fit of the baseline.
-    """
+    """Return the corrections of loading and unloading over the depths that a set reaches."""
     problem = simulator.problem
     k = problem.n_nuisances
     shallowest, deepest = _reached(simulator, base)

@@ -50,14 +50,8 @@ def scores_of(
 ) -> dict[str, dict[str, float]]:
     """Return evidence over the baseline, held-out miss, p of fit and chi2 of every explanation.
 
-    Parameters
-    ----------
-    ranking
-        All fits.
-    p, left_out
-        For each fit by name, how it passes the test of fit and predicts left-out conditions.
-    sampled
-        Sampled ln evidence over the baseline, of those that were sampled.
+    `p`, `left_out`: for each fit by name, how it passes the test of fit and predicts left-out
+    conditions; `sampled`: sampled ln evidence over the baseline, of those that were sampled.
     """
     base = ranking.base.log_evidence
     return {
@@ -133,15 +127,9 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
 def misfit_of(problem: Problem, base: Fit, stated: Array) -> dict[str, float]:
     """Return the baseline's misfit before anything may move, and which part took how much of it.
 
-    Parameters
-    ----------
-    problem, base
-        What was compared, and the fit of the baseline.
-    stated
-        (m,) predictions of the cells with every input as stated.
+    `problem`, `base`: what was compared, and the fit of the baseline; `stated`: (m,) predictions of
+    the cells with every input as stated.
 
-    Notes
-    -----
     With r the residual as stated, s_k what part k moves of it at the posterior mean and N the
     noise, a part took s_k^T N^-1 r / r^T N^-1 r; what no part took is `rest`. The law's error is
     shared between the finite elements and the metal by their variances.

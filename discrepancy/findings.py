@@ -39,16 +39,10 @@ class After(NamedTuple):
 class WrongInput(NamedTuple):
     """A number of the sheet that is wrong.
 
-    Parameters
-    ----------
-    number
-        Which.
-    probability
-        That it takes part.
-    stated
-        As it stands [`number.unit`]; none where it is not one number.
-    off, low, high
-        Factor on it, or what is added to all heights [m], with the 90 % interval.
+    - `probability`: that it takes part.
+    - `stated`: as it stands [`number.unit`]; none where it is not one number.
+    - `off`, `low`, `high`: factor on it, or what is added to all heights [m], with the 90 %
+      interval.
     """
 
     number: WrongNumber

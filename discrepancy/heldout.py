@@ -23,15 +23,10 @@ from .inference.left_out import Whole
 class HeldOut:
     """Scores of one explanation on left-out conditions.
 
-    Parameters
-    ----------
-    rms
-        Of (prediction - mean)/standard error: 1 is what the noise alone leaves.
-    log_density
-        Mean of the ln predictive density of a number in units of its standard error [nat]: -1.42
-        is what the noise alone leaves.
-    trials
-        Readings behind it, each as often as a group leaves it out.
+    - `rms`: of (prediction - mean)/standard error: 1 is what the noise alone leaves.
+    - `log_density`: mean of the ln predictive density of a number in units of its standard error
+      [nat]: -1.42 is what the noise alone leaves.
+    - `trials`: readings behind it, each as often as a group leaves it out.
     """
 
     rms: float

@@ -30,14 +30,9 @@ ORDER = "order of testing"
 class Miss:
     """One place where the baseline misses.
 
-    Parameters
-    ----------
-    observable, phase, covariate
-        What, in which phase of the impact, along which condition.
-    trend
-        In words: how recording over simulation goes.
-    z
-        Score; the family-wise threshold is in `Located`.
+    - `observable`, `phase`, `covariate`: what, in which phase of the impact, along which condition.
+    - `trend`: in words: how recording over simulation goes.
+    - `z`: score; the family-wise threshold is in `Located`.
     """
 
     observable: str
@@ -51,14 +46,9 @@ class Miss:
 class Located:
     """What misses, worst first.
 
-    Parameters
-    ----------
-    beyond_chance
-        Places that fewer than one set in twenty with nothing missing has anywhere.
-    worst
-        The worst of the others, where all numbers together say that something is missing.
-    threshold
-        Score that one set in twenty exceeds somewhere by chance.
+    - `beyond_chance`: places that fewer than one set in twenty with nothing missing has anywhere.
+    - `worst`: the worst of the others, where all numbers together say that something is missing.
+    - `threshold`: score that one set in twenty exceeds somewhere by chance.
     """
 
     beyond_chance: tuple[Miss, ...]
@@ -76,19 +66,11 @@ def locate(
 ) -> Located:
     """Test every cell of observable by covariate.
 
-    Parameters
-    ----------
-    problem
-        What was compared.
-    base
-        Fit of the baseline.
-    nulls
-        Null residuals, for the threshold.
-    level
-        Family-wise.
-    least
-        Number of places that are told in any case: 1 where all numbers together say that something
-        is missing, even if no contrast alone does.
+    - `problem`: what was compared.
+    - `nulls`: null residuals, for the threshold.
+    - `level`: family-wise.
+    - `least`: number of places that are told in any case: 1 where all numbers together say that
+      something is missing, even if no contrast alone does.
     """
     linear = base.linear
     names, contrasts = _contrasts(problem, 1.0 / np.diag(linear.total))

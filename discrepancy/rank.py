@@ -28,18 +28,11 @@ Progress = Callable[[str], None]
 class Screened:
     """First pass over one mechanism, with the baseline's own derivatives.
 
-    Parameters
-    ----------
-    mechanism
-        Which.
-    grid, change
-        Grid of its parameters, and the simulated change of the cells at its nodes (nodes, m).
-    effect
-        (k, m) the same over the refined grid.
-    log_bayes
-        ln B against the baseline.
-    place
-        Most probable place (axes,).
+    - `grid`, `change`: grid of its parameters, and the simulated change of the cells at its nodes
+      (nodes, m).
+    - `effect`: (k, m) the same over the refined grid.
+    - `log_bayes`: ln B against the baseline.
+    - `place`: most probable place (axes,).
     """
 
     mechanism: Mechanism
@@ -54,12 +47,8 @@ class Screened:
 class Nameless:
     """Physics that a verdict has no name for: first pass, and its full fit where it is close.
 
-    Parameters
-    ----------
-    screened, fit
-        First pass; full fit or none.
-    log_bayes
-        ln B against the baseline, of the fit where there is one.
+    `screened`, `fit`: first pass; full fit or none; `log_bayes`: ln B against the baseline, of the
+    fit where there is one.
     """
 
     screened: Screened
@@ -71,20 +60,13 @@ class Nameless:
 class Ranking:
     """All explanations.
 
-    Parameters
-    ----------
-    problem
-        What they were fitted to: outliers have no weight in it.
-    base, stated
-        Fit of the baseline, and its algebra at the stated numbers, where the first pass is.
-    screened
-        First pass, by the mechanisms' own order.
-    singles, pairs
-        Full fits, best first.
-    excluded
-        Mechanism to the reason why arithmetic rules it out.
-    nameless
-        What a verdict has no name for, and ln B of each against the baseline.
+    - `problem`: what they were fitted to: outliers have no weight in it.
+    - `base`, `stated`: fit of the baseline, and its algebra at the stated numbers, where the first
+      pass is.
+    - `screened`: first pass, by the mechanisms' own order.
+    - `singles`, `pairs`: full fits, best first.
+    - `excluded`: mechanism to the reason why arithmetic rules it out.
+    - `nameless`: what a verdict has no name for, and ln B of each against the baseline.
     """
 
     problem: Problem
@@ -110,14 +92,8 @@ def rank(
 ) -> Ranking:
     """Fit the baseline and every mechanism that is not excluded, by itself.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    mechanisms
-        What to try; left out: the library, and every number of the sheet that may be wrong.
-    progress
-        Called with a line before each step.
+    `mechanisms`: what to try; left out: the library, and every number of the sheet that may be
+    wrong.
     """
     progress("calibrating what is known within its uncertainty")
     base, stated = fit(simulator, ()), as_stated(simulator)

@@ -21,21 +21,12 @@ from .inference.fit import Fit
 class Samples:
     """Equally probable draws of one explanation.
 
-    Parameters
-    ----------
-    explanation
-        Its name, as the scores know it.
-    parameters
-        Mechanisms' parameters and the numbers of set.toml by name, (draws,) each.
-    predicted
-        By observable, what the same trials would read again: the mean of each condition's
-        readings, (draws, readings), SI.
-    measured
-        By observable, what they did read, (readings,).
-    condition
-        By observable, number of each reading's condition, from 1.
-    units
-        Of the parameters.
+    - `explanation`: its name, as the scores know it.
+    - `parameters`: mechanisms' parameters and the numbers of set.toml by name, (draws,) each.
+    - `predicted`: by observable, what the same trials would read again: the mean of each
+      condition's readings, (draws, readings), SI.
+    - `measured`: by observable, what they did read, (readings,).
+    - `condition`: by observable, number of each reading's condition, from 1.
     """
 
     explanation: str
@@ -98,17 +89,8 @@ def _group(
 def drawn(problem: Problem, fitted: Fit, draws: int, rng: np.random.Generator) -> Samples:
     """Draw from the posterior of an explanation.
 
-    Parameters
-    ----------
-    problem, fitted
-        What was compared, and the fit of the explanation.
-    draws
-        How many.
-    rng
-        Of the draws.
+    `problem`, `fitted`: what was compared, and the fit of the explanation.
 
-    Notes
-    -----
     A draw takes a cell of the refined grid by its weight and a size of the model's errors by what
     the residuals there say, then the unknowns u (stated numbers, the law's error, the form's) from
     their normal distribution given these; what is read again is data - residual + A u + noise.

@@ -33,13 +33,9 @@ _STEPS = RULES.fall_steps
 class Flown:
     """Where a flight ends.
 
-    Parameters
-    ----------
-    normal, tangential
-        Velocity at the end, shape (n,) [m/s]; the normal one points up. nan where the striker does
-        not get there.
-    time
-        From start to end, shape (n,) [s]; negative if the motion was traced back.
+    - `normal`, `tangential`: velocity at the end, shape (n,) [m/s]; the normal one points up. nan
+      where the striker does not get there.
+    - `time`: from start to end, shape (n,) [s]; negative if the motion was traced back.
     """
 
     normal: Array
@@ -53,19 +49,13 @@ def flown(
 ) -> Flown:  # fmt: skip
     """Trace a flight over a height, with or against time.
 
-    Parameters
-    ----------
-    striker, fluid
-        What flies through what.
-    normal, tangential
-        Velocity at the start, shape (n,) [m/s]; normal points up, 0 means released from rest.
-    rise
-        Height of the end above the start, shape (n,) [m]. Of the same sign as `normal`: what comes;
-        of the other: what was.
-    angle
-        Between a rod's axis and the flat [rad].
-    gravity
-        [m/s^2].
+    - `striker`, `fluid`: what flies through what.
+    - `normal`, `tangential`: velocity at the start, shape (n,) [m/s]; normal points up, 0 means
+      released from rest.
+    - `rise`: height of the end above the start, shape (n,) [m]. Of the same sign as `normal`: what
+      comes; of the other: what was.
+    - `angle`: between a rod's axis and the flat [rad].
+    - `gravity`: [m/s^2].
 
     Examples
     --------

@@ -69,13 +69,7 @@ class Logs(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class StrengthTable:
-    """What a law says of a pair, over the depth nodes, as stated and at other strengths.
-
-    Parameters
-    ----------
-    law, pair
-        Law and pair.
-    """
+    """What a law says of a pair, over the depth nodes, as stated and at other strengths."""
 
     law: ContactLaw
     pair: Pair

@@ -375,27 +375,15 @@ def bulk_forces(
 ) -> int:
     """Add the internal forces at displacement `u` to `force`, and fill the element tangents.
 
-    Parameters
-    ----------
-    elements
-        The mesh's constants.
-    u
-        Displacements (r, z) node by node, shape (2 n_nodes,) [R].
-    state
-        Material state at the last accepted step.
-    rule
-        Stress update, `material.RADIAL` or `material.EXACT`.
-    seconds
-        Time since the last accepted step, for what feels the rate [s]; `inf`: slow.
-    force
-        Array that the forces are added to, shape (2 n_nodes,) [E' R^2].
-    tangent
-        Array for the element tangents, shape (n_elements, 8, 8) [E' R]; none: forces only.
+    - `elements`: the mesh's constants.
+    - `u`: displacements (r, z) node by node, shape (2 n_nodes,) [R].
+    - `state`: material state at the last accepted step.
+    - `rule`: stress update, `material.RADIAL` or `material.EXACT`.
+    - `seconds`: time since the last accepted step, for what feels the rate [s]; `inf`: slow.
+    - `force`: array that the forces are added to, shape (2 n_nodes,) [E' R^2].
+    - `tangent`: array for the element tangents, shape (n_elements, 8, 8) [E' R]; none: forces only.
 
-    Returns
-    -------
-    int
-        Number of plastic points, or `DISTORTED`.
+    Returned: number of plastic points, or `DISTORTED`.
     """
     into = tangent if tangent is not None else np.empty((0, 8, 8))
     code = _assemble(

@@ -27,30 +27,18 @@ _GAUSS = 0.5 / math.sqrt(3.0)
 class Discretisation:
     """Mesh, elements, surfaces and boundary conditions of one solve.
 
-    Parameters
-    ----------
-    mesh
-        Nodes and quadrilaterals.
-    elements
-        Constants of the elements that deform (a rigid body has none).
-    element_index
-        Their numbers in the mesh.
-    surfaces
-        The two surfaces.
-    driven, held
-        Degrees of freedom that move by -Delta, and those that stay.
-    reaction
-        Driven degrees of freedom whose internal forces add up to the reaction; empty if the sphere
-        is rigid.
-    stress_unit
-        E' [Pa].
-    round_off
-        Sum of nodal forces that round-off in the deformation gradient makes [E' R^2]; the large
-        elements far from the contact rule it.
-    clock
-        Time that the approach takes.
-    fine
-        Ring width over radius along the path of the contact edge.
+    - `mesh`: nodes and quadrilaterals.
+    - `elements`: constants of the elements that deform (a rigid body has none).
+    - `element_index`: their numbers in the mesh.
+    - `surfaces`: the two surfaces.
+    - `driven`, `held`: degrees of freedom that move by -Delta, and those that stay.
+    - `reaction`: driven degrees of freedom whose internal forces add up to the reaction; empty if
+      the sphere is rigid.
+    - `stress_unit`: E' [Pa].
+    - `round_off`: sum of nodal forces that round-off in the deformation gradient makes [E' R^2];
+      the large elements far from the contact rule it.
+    - `clock`: time that the approach takes.
+    - `fine`: ring width over radius along the path of the contact edge.
     """
 
     mesh: Mesh

@@ -15,33 +15,20 @@ from .material.flow import NO_RATE, at_point
 class Elements(NamedTuple):
     """Everything about the elements that does not change during a solve (R = 1, E' = 1).
 
-    Parameters
-    ----------
-    conn
-        Node numbers, shape (n_elements, 4).
-    grad
-        Reference gradients of the basis functions, shape (n_elements, 4, 4, 2): element, point,
-        node, direction.
-    value
-        Basis functions at the points, shape (4, 4): point, node.
-    r
-        Reference radius of the points, shape (n_elements, 4).
-    dV
-        Reference volume of the points (2 pi r dA), shape (n_elements, 4).
-    volume
-        Reference volume of the elements, shape (n_elements,).
-    G, K
-        Shear and bulk modulus, shape (n_elements,).
-    radius
-        sqrt(2/3) Sy / (2 G), shape (n_elements,); `inf` where elastic.
-    stiffness
-        Constant stiffness matrices of linear elements, shape (n_linear, 8, 8) [E' R].
-    linear
-        Row of `stiffness` of each element, -1 for those of finite strain, shape (n_elements,).
-    law
-        Row of `laws` of each element, -1 for those perfectly plastic, shape (n_elements,).
-    laws
-        The flow laws.
+    - `conn`: node numbers, shape (n_elements, 4).
+    - `grad`: reference gradients of the basis functions, shape (n_elements, 4, 4, 2): element,
+      point, node, direction.
+    - `value`: basis functions at the points, shape (4, 4): point, node.
+    - `r`: reference radius of the points, shape (n_elements, 4).
+    - `dV`: reference volume of the points (2 pi r dA), shape (n_elements, 4).
+    - `volume`: reference volume of the elements, shape (n_elements,).
+    - `G`, `K`: shear and bulk modulus, shape (n_elements,).
+    - `radius`: sqrt(2/3) Sy / (2 G), shape (n_elements,); `inf` where elastic.
+    - `stiffness`: constant stiffness matrices of linear elements, shape (n_linear, 8, 8) [E' R].
+    - `linear`: row of `stiffness` of each element, -1 for those of finite strain, shape
+      (n_elements,).
+    - `law`: row of `laws` of each element, -1 for those perfectly plastic, shape (n_elements,).
+    - `laws`: the flow laws.
     """
 
     conn: Integers
@@ -82,18 +69,12 @@ class Elements(NamedTuple):
 class State(NamedTuple):
     """Material state at the last accepted step.
 
-    Parameters
-    ----------
-    F
-        Deformation gradient (rr, rz, zr, zz, tt), shape (n_elements, 4, 5).
-    b
-        Elastic left Cauchy-Green tensor (rr, zz, rz, tt), shape (n_elements, 4, 4).
-    strain
-        Deviator of the elastic logarithmic strain 1/2 ln b, shape (n_elements, 4, 4).
-    peeq, work
-        Equivalent plastic strain and plastic work of a volume [E'], shape (n_elements, 4).
-    dissipated
-        Plastic work so far, summed over the mesh.
+    - `F`: deformation gradient (rr, rz, zr, zz, tt), shape (n_elements, 4, 5).
+    - `b`: elastic left Cauchy-Green tensor (rr, zz, rz, tt), shape (n_elements, 4, 4).
+    - `strain`: deviator of the elastic logarithmic strain 1/2 ln b, shape (n_elements, 4, 4).
+    - `peeq`, `work`: equivalent plastic strain and plastic work of a volume [E'], shape
+      (n_elements, 4).
+    - `dissipated`: plastic work so far, summed over the mesh.
     """
 
     F: Array
@@ -173,10 +154,7 @@ def deformation(elements, u):
 def cauchy_stress(elements: Elements, state: State) -> tuple[Array, Array]:
     """Cauchy stress deviator (rr, zz, rz, tt) at the points and pressure of the elements.
 
-    Returns
-    -------
-    tuple
-        Deviator, shape (n_elements, 4, 4), and mean stress, shape (n_elements,) [E'].
+    Returned: deviator, shape (n_elements, 4, 4), and mean stress, shape (n_elements,) [E'].
     """
     J = (state.F[..., 0] * state.F[..., 3] - state.F[..., 1] * state.F[..., 2]) * state.F[..., 4]
     theta = (J * elements.dV).sum(axis=1) / elements.volume

@@ -426,11 +426,8 @@ def _stack_size(below, parent):
 class Fronts:
     """A pattern's tree, its fronts, and the factors of the matrix that was factorised last.
 
-    Parameters
-    ----------
-    indptr, indices
-        Columns of a structurally symmetric matrix, indices sorted, unknowns in a post-order of the
-        elimination tree (`postorder`).
+    `indptr`, `indices`: columns of a structurally symmetric matrix, indices sorted, unknowns in a
+    post-order of the elimination tree (`postorder`).
     """
 
     def __init__(self, indptr: Integers, indices: Integers) -> None:

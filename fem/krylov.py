@@ -85,25 +85,16 @@ def gmres(matrix, rhs, known, room, rtol, most):
     The method is that of Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856. The criterion
     is one on the correction itself; a residual would be ruled by the stiff contact.
 
-    Parameters
-    ----------
-    matrix
-        (indptr, indices, data) by columns.
-    rhs
-        (n,).
-    known
-        `Fronts.known`.
-    room
-        Working arrays: (n,) of single precision, (n,), (most + 1, n), and (n,) for the solution.
-    rtol
-        Size of the preconditioned residual that may be left over, relative.
-    most
-        Steps.
+    - `matrix`: (indptr, indices, data) by columns.
+    - `rhs`: (n,).
+    - `known`: `Fronts.known`.
+    - `room`: working arrays: (n,) of single precision, (n,), (most + 1, n), and (n,) for the
+      solution.
+    - `rtol`: size of the preconditioned residual that may be left over, relative.
+    - `most`: steps.
 
-    Returns
-    -------
-    tuple
-        Steps taken, negative if they were not enough, and the sum of the residual over that of rhs.
+    Returned: steps taken, negative if they were not enough, and the sum of the residual over that
+    of rhs.
     """
     matrix, rhs, known, room = unowned(matrix), unowned(rhs), unowned(known), unowned(room)
     single, y, V, x = room

@@ -91,14 +91,8 @@ def _scatter_triplets(data, indptr, indices, number, row, col, value, n):
 class LinearSystem:
     """Tangent matrix of the free degrees of freedom.
 
-    Parameters
-    ----------
-    element_dofs
-        Degrees of freedom of the elements, shape (n_elements, 8).
-    free
-        Free degrees of freedom, in increasing order.
-    n_dofs
-        All degrees of freedom.
+    `element_dofs`: degrees of freedom of the elements, shape (n_elements, 8); `free`: free degrees
+    of freedom, in increasing order; `n_dofs`: all degrees of freedom.
     """
 
     def __init__(self, element_dofs: Integers, *, free: Integers, n_dofs: int) -> None:

@@ -65,12 +65,9 @@ class PathPoint:
 def extrapolate(point: PathPoint, before: Array | None, reach: float) -> Array:
     """First guess of the displacements after a step from `point`.
 
-    Parameters
-    ----------
-    before
-        Displacements at the point before, on the same mesh; none: in proportion to the approach.
-    reach
-        The step over the last one; without a last one, the approach over that of `point`.
+    - `before`: displacements at the point before, on the same mesh; none: in proportion to the
+      approach.
+    - `reach`: the step over the last one; without a last one, the approach over that of `point`.
     """
     u = point.equilibrium.u
     if before is None:

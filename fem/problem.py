@@ -85,13 +85,8 @@ class Accuracy:
 class Clock:
     """Time that an approach takes, from its speed by depth.
 
-    Parameters
-    ----------
-    speeds
-        Rows of Delta/R and speed [m/s], the depths increasing; linear between them, constant
-        beyond. Empty: so slow that no rate counts.
-    R
-        Radius [m].
+    `speeds`: rows of Delta/R and speed [m/s], the depths increasing; linear between them, constant
+    beyond. Empty: so slow that no rate counts. `R`: radius [m].
     """
 
     speeds: tuple[tuple[float, float], ...]

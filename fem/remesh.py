@@ -33,13 +33,10 @@ _BODIES = (True, False)
 class Transfer:
     """Carries displacements and material states from one discretisation to another.
 
-    Parameters
-    ----------
-    old, new
-        Two discretisations of one problem, made for different zones; the innermost block of the new
-        one is not the smaller.
-    before
-        `after` of the transfer to the old one, if there was one: saves walking through its mesh.
+    - `old`, `new`: two discretisations of one problem, made for different zones; the innermost
+      block of the new one is not the smaller.
+    - `before`: `after` of the transfer to the old one, if there was one: saves walking through its
+      mesh.
 
     Attributes
     ----------

@@ -38,16 +38,10 @@ def misses(
 ) -> dict[str, Misses]:
     """Errors of every quantity of `Uncertainty` beyond first yield, by name.
 
-    Parameters
-    ----------
-    p
-        Predictions, of combinations left out.
-    numbers
-        The law's numbers of every case, fields of shape (n_cases,).
-    table, turns
-        The rows.
-    alone
-        The cases that count, shape (n_cases,); all if not given.
+    - `p`: predictions, of combinations left out.
+    - `numbers`: the law's numbers of every case, fields of shape (n_cases,).
+    - `table`, `turns`: the rows.
+    - `alone`: the cases that count, shape (n_cases,); all if not given.
     """
     count = np.ones(len(table.pairs), dtype=bool) if alone is None else alone
 

@@ -36,14 +36,8 @@ _TABLES: dict[Body, str] = {"sphere": "tip", "flat": "crater"}
 class Left(NamedTuple):
     """What a contact has left.
 
-    Parameters
-    ----------
-    radius
-        Of the contact at its deepest [m].
-    depth
-        Deepest approach [m].
-    sphere, flat
-        Permanent displacement of each pole [m].
+    `radius`: of the contact at its deepest [m]; `depth`: deepest approach [m]; `sphere`, `flat`:
+    permanent displacement of each pole [m].
     """
 
     radius: float
@@ -60,12 +54,8 @@ class Left(NamedTuple):
 class CraterShape(NamedTuple):
     """Height over the surface that was, over the depth left: -1 in the middle.
 
-    Parameters
-    ----------
-    height, std
-        At `PLACES`, and its standard deviation.
-    near
-        Whether the nearest published crater is no further than one spread of them all.
+    `height`, `std`: at `PLACES`, and its standard deviation; `near`: whether the nearest published
+    crater is no further than one spread of them all.
     """
 
     height: Array

@@ -54,14 +54,8 @@ class _Case(NamedTuple):
 class HardeningFit:
     """Result of the regression.
 
-    Parameters
-    ----------
-    correction
-        What the law adds.
-    left_out
-        Mean and largest error on pairs left out, by name as in `fitting.Errors`.
-    combinations
-        How many pairs.
+    `correction`: what the law adds; `left_out`: mean and largest error on pairs left out, by name
+    as in `fitting.Errors`; `combinations`: how many pairs.
     """
 
     correction: HardeningCorrection

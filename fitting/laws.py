@@ -30,16 +30,10 @@ _DRAWN = ("space", "near-equal", "survey")
 class JudgedLaws:
     """A law and what pairs say of it that its fit had not seen.
 
-    Parameters
-    ----------
-    errors, held_out
-        Errors on the fitted rows, and on combinations left out.
-    predicted
-        Every row as predicted by a fit that did not see its combination.
-    calibration
-        Standard deviations from these.
-    within
-        Shares of the errors left out within one and two of them, by quantity.
+    - `errors`, `held_out`: errors on the fitted rows, and on combinations left out.
+    - `predicted`: every row as predicted by a fit that did not see its combination.
+    - `calibration`: standard deviations from these.
+    - `within`: shares of the errors left out within one and two of them, by quantity.
     """
 
     errors: Errors

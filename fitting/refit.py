@@ -30,14 +30,8 @@ Progress = Callable[[str], None]
 class Judged(NamedTuple):
     """What unseen pairs say of laws.
 
-    Parameters
-    ----------
-    errors
-        Of each law, by its name.
-    within
-        Share of the misses that each law's stated deviations hold, by its name.
-    names
-        Of the cases.
+    `errors`: of each law, by its name; `within`: share of the misses that each law's stated
+    deviations hold, by its name; `names`: of the cases.
     """
 
     errors: list[tuple[str, Errors]]
@@ -49,18 +43,11 @@ class Judged(NamedTuple):
 class Refit:
     """What a fit gives.
 
-    Parameters
-    ----------
-    laws
-        The compact and the fitted law, with their errors.
-    table, turns
-        The rows that they were fitted to.
-    content
-        Of the file of coefficients.
-    validation
-        Errors on the cases that no fit reads; empty where there are none.
-    hardens
-        Whether there were metals that harden, and `content` has their law.
+    - `laws`: the compact and the fitted law, with their errors.
+    - `table`, `turns`: the rows that they were fitted to.
+    - `content`: of the file of coefficients.
+    - `validation`: errors on the cases that no fit reads; empty where there are none.
+    - `hardens`: whether there were metals that harden, and `content` has their law.
     """
 
     laws: FittedLaws

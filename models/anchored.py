@@ -33,18 +33,11 @@ from .uncertainty import Uncertainty
 class AnchoredLaw(ContactLaw):
     """The fitted law, shifted onto another law at one pair.
 
-    Parameters
-    ----------
-    fitted
-        Says how the contact changes with the two bodies.
-    anchor, at
-        Says what the contact is at this pair.
-    stated
-        The same pair to the fitted law: perfectly plastic.
-    deepest
-        Delta/R to which the anchor is known; beyond, the distance stays.
-    hardens
-        Whether the anchor follows the flow curve of the body that yields first.
+    - `fitted`: says how the contact changes with the two bodies.
+    - `anchor`, `at`: says what the contact is at this pair.
+    - `stated`: the same pair to the fitted law: perfectly plastic.
+    - `deepest`: Delta/R to which the anchor is known; beyond, the distance stays.
+    - `hardens`: whether the anchor follows the flow curve of the body that yields first.
     """
 
     fitted: ClosedForm

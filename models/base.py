@@ -278,12 +278,8 @@ def _no_numbers(common: Common) -> Sequence[float]:
 class PublishedLaw(ContactLaw):
     """A law given by its four kernels and, where they need some, numbers of its own.
 
-    Parameters
-    ----------
-    own
-        The kernels.
-    numbers
-        The law's own numbers from the pair's common ones, placed behind these.
+    `own`: the kernels; `numbers`: the law's own numbers from the pair's common ones, placed behind
+    these.
     """
 
     own: Kernels

@@ -30,14 +30,9 @@ _ELASTIC_DEPTH = 1.9
 class Demand:
     """What a pair asks of a law at its largest depth.
 
-    Parameters
-    ----------
-    regime
-        "elastic", "flattening", "both bodies" or "indentation".
-    w
-        Largest approach over the critical one; 0 if nothing yields.
-    a_over_R
-        Contact radius over R, without pile-up or sink-in.
+    - `regime`: "elastic", "flattening", "both bodies" or "indentation".
+    - `w`: largest approach over the critical one; 0 if nothing yields.
+    - `a_over_R`: contact radius over R, without pile-up or sink-in.
     """
 
     regime: str

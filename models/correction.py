@@ -69,14 +69,8 @@ _UNITS = np.array([channel.unit for channel in CHANNELS.values()])
 class PairCorrection:
     """Bumps and weights.
 
-    Parameters
-    ----------
-    centres
-        Of the bumps in the groups, shape (m, 5).
-    reaches
-        Widths of the bumps, shape (5,).
-    weights
-        Shift of each channel by each bump, shape (m, n_channels).
+    `centres`: of the bumps in the groups, shape (m, 5); `reaches`: widths of the bumps, shape (5,);
+    `weights`: shift of each channel by each bump, shape (m, n_channels).
     """
 
     centres: Array

@@ -98,16 +98,10 @@ _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
 class ClosedForm(ContactLaw):
     """One of our closed forms with its numbers; equal to itself alone.
 
-    Parameters
-    ----------
-    coefficients
-        Value of every name in `closed_form.COEFFICIENTS`.
-    correction
-        What is added to the compact law; none for that law itself.
-    limits
-        Smallest and largest value of each quantity of the domain in the data behind them.
-    calibration
-        How far pairs that no fit had seen lay away; none if not stated.
+    - `coefficients`: value of every name in `closed_form.COEFFICIENTS`.
+    - `correction`: what is added to the compact law; none for that law itself.
+    - `limits`: smallest and largest value of each quantity of the domain in the data behind them.
+    - `calibration`: how far pairs that no fit had seen lay away; none if not stated.
     """
 
     coefficients: Mapping[str, float] = field(default_factory=dict)
@@ -153,23 +147,12 @@ class ClosedForm(ContactLaw):
     def gradient(self, pair: Pair, depth: Depths) -> dict[str, Array]:
         """Derivatives of the loading force, exact to round-off (complex steps).
 
-        Parameters
-        ----------
-        pair
-            Two bodies, none of them rigid.
-        depth
-            Approach, shape (...) [m]; above zero.
+        `pair`: two bodies, none of them rigid; `depth`: approach, shape (...) [m]; above zero.
 
-        Returns
-        -------
-        dict
-            dF/d(depth) [N/m], dF/d(E_s), dF/d(E_f), dF/d(Sy_s), dF/d(Sy_f) [N/Pa], dF/d(nu_s),
-            dF/d(nu_f) [N] and dF/d(R) [N/m], each of shape (...).
+        Returned: dF/d(depth) [N/m], dF/d(E_s), dF/d(E_f), dF/d(Sy_s), dF/d(Sy_f) [N/Pa],
+        dF/d(nu_s), dF/d(nu_f) [N] and dF/d(R) [N/m], each of shape (...).
 
-        Raises
-        ------
-        InputError
-            A rigid body, or a depth of zero or less.
+        Raises `InputError`: a rigid body, or a depth of zero or less.
         """
         d = depths_of(depth)
         if pair.sphere.rigid or pair.flat.rigid:

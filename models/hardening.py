@@ -85,15 +85,11 @@ class Equivalent(NamedTuple):
 class HardeningCorrection:
     """What finite elements add to the equivalence.
 
-    Parameters
-    ----------
-    low, high
-        Bounds of the coordinates in the data, shape (5,); beyond them the correction fades.
-    weights
-        Of the features for each of `CORRECTED`, shape (n_features, 6).
-    spread
-        How far pairs left out of the fit lay away beside the fitted law's own errors, by the names
-        of `Uncertainty`.
+    - `low`, `high`: bounds of the coordinates in the data, shape (5,); beyond them the correction
+      fades.
+    - `weights`: of the features for each of `CORRECTED`, shape (n_features, 6).
+    - `spread`: how far pairs left out of the fit lay away beside the fitted law's own errors, by
+      the names of `Uncertainty`.
     """
 
     low: Array
@@ -106,12 +102,8 @@ class HardeningCorrection:
 class HardeningLaw(ContactLaw):
     """The fitted law at the mean flow stress of each body.
 
-    Parameters
-    ----------
-    fitted
-        The law of perfectly plastic bodies.
-    correction
-        What is added to that; none: nothing is fitted.
+    `fitted`: the law of perfectly plastic bodies; `correction`: what is added to that; none:
+    nothing is fitted.
     """
 
     fitted: ClosedForm

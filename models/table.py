@@ -124,13 +124,8 @@ class PairTable:
 def packed_columns(grid: Array, columns: Sequence[Array]) -> Array:
     """Return what the kernels read behind the common numbers.
 
-    Parameters
-    ----------
-    grid
-        ln(Delta/R), evenly, shape (n,).
-    columns
-        Logarithms of F/(E' R^2) and a/R, permanent part of the approach, the sphere's part of it,
-        exponent of the unloading; each of shape (n,).
+    `grid`: ln(Delta/R), evenly, shape (n,); `columns`: logarithms of F/(E' R^2) and a/R, permanent
+    part of the approach, the sphere's part of it, exponent of the unloading; each of shape (n,).
     """
     step = grid[1] - grid[0]
     values = np.stack(columns)
@@ -142,12 +137,8 @@ def packed_columns(grid: Array, columns: Sequence[Array]) -> Array:
 def recovery_exponent(x: Array, F: Array, left: Array, exponent: Array) -> Array:
     """Exponent of the unloading, raised where more would come back than was spent.
 
-    Parameters
-    ----------
-    x, F
-        ln(Delta/R) and ln(F/(E' R^2)) of the loading, shape (n,).
-    left, exponent
-        Permanent part of the approach, and the exponent as it is.
+    `x`, `F`: ln(Delta/R) and ln(F/(E' R^2)) of the loading, shape (n,); `left`, `exponent`:
+    permanent part of the approach, and the exponent as it is.
     """
     return np.maximum(exponent, _elastic(x, F) * (1.0 - left) - 1.0)
 

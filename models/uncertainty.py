@@ -56,10 +56,7 @@ class Uncertainty(NamedTuple):
 class Calibration:
     """Weights of `FEATURES` in the logarithm of each standard deviation.
 
-    Parameters
-    ----------
-    weights
-        One row for each field of `Uncertainty`, shape (5, n_features).
+    `weights`: one row for each field of `Uncertainty`, shape (5, n_features).
     """
 
     weights: Array

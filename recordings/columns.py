@@ -29,17 +29,11 @@ Kind = Literal["text", "condition", "observable", "std"]
 class Column:
     """One column: what it holds and which numbers it accepts.
 
-    Parameters
-    ----------
-    kind
-        `text`, a number that sets the trial's condition, a measured observable, or the standard
-        deviation of another column.
-    meaning
-        One sentence for the documentation and the template.
-    low, high
-        Range of the numbers, in the unit of the column's name.
-    low_allowed
-        Whether `low` itself is accepted.
+    - `kind`: `text`, a number that sets the trial's condition, a measured observable, or the
+      standard deviation of another column.
+    - `meaning`: one sentence for the documentation and the template.
+    - `low`, `high`: range of the numbers, in the unit of the column's name.
+    - `low_allowed`: whether `low` itself is accepted.
     """
 
     kind: Kind

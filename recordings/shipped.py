@@ -20,10 +20,7 @@ def set_folder(given: Path) -> Path:
 
     A folder of the user's goes before a shipped set of the same name, but for one of its results.
 
-    Raises
-    ------
-    InputError
-        A plain name that is neither; the names of the shipped sets are told.
+    Raises `InputError`: a plain name that is neither; the names of the shipped sets are told.
 
     Examples
     --------

@@ -60,14 +60,9 @@ class Compared(NamedTuple):
 class Closed:
     """What finite elements with the inferred constants say of the recordings.
 
-    Parameters
-    ----------
-    constants
-        Mechanism to its numbers, from the conditions that were kept in.
-    rows
-        Every number of the conditions that were solved.
-    tables
-        The solved pairs, usable as contact laws where no rate acts.
+    - `constants`: mechanism to its numbers, from the conditions that were kept in.
+    - `rows`: every number of the conditions that were solved.
+    - `tables`: the solved pairs, usable as contact laws where no rate acts.
     """
 
     constants: Constants
@@ -90,19 +85,9 @@ def close(
 ) -> Closed:
     """Solve the metal that a verdict names, and compare it with the recordings.
 
-    Parameters
-    ----------
-    verdict
-        From `diagnose`.
-    accuracy
-        Of the finite elements; quick by default.
-    progress
-        Called with a line before each solve.
+    `accuracy`: of the finite elements; quick by default.
 
-    Raises
-    ------
-    InputError
-        The verdict names nothing that the finite elements carry.
+    Raises `InputError`: the verdict names nothing that the finite elements carry.
     """
     best, problem = verdict.best, verdict.ranking.problem
     carried = [m for m in best.mechanisms if m.name in CARRIED]

@@ -27,14 +27,8 @@ _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 class PressedContact:
     """The contact at the deepest approach whose pressure was kept.
 
-    Parameters
-    ----------
-    depth
-        Delta/R.
-    mean_pressure, largest_pressure
-        F/(pi a^2) and the largest over the contact [Pa].
-    largest_at
-        Radius where the largest is [m].
+    `depth`: Delta/R; `mean_pressure`, `largest_pressure`: F/(pi a^2) and the largest over the
+    contact [Pa]; `largest_at`: radius where the largest is [m].
     """
 
     depth: float
@@ -47,24 +41,16 @@ class PressedContact:
 class Dent:
     """What one unloading leaves.
 
-    Parameters
-    ----------
-    depth
-        Delta/R from which it was unloaded.
-    load
-        Force there [N].
-    left_sphere, left_flat
-        Permanent displacement of the pole, and of the flat below it [m].
-    contact_diameter
-        Of the contact under the load [m].
-    rim_diameter, rim_height
-        Of the highest circle of the flat around the dent, and how far it stands above the flat
-        that was [m]; nan and 0 where the flat sinks in and has no rim.
-    brinell_by_contact, brinell_by_rim
-        Hardness after Brinell by either diameter [kgf/mm2]; nan where the ball keeps more than 5 %
-        of the permanent approach, or there is no such diameter.
-    energy_returned
-        Work on the way back over that on the way in [-].
+    - `depth`: Delta/R from which it was unloaded.
+    - `load`: force there [N].
+    - `left_sphere`, `left_flat`: permanent displacement of the pole, and of the flat below it [m].
+    - `contact_diameter`: of the contact under the load [m].
+    - `rim_diameter`, `rim_height`: of the highest circle of the flat around the dent, and how far
+      it stands above the flat that was [m]; nan and 0 where the flat sinks in and has no rim.
+    - `brinell_by_contact`, `brinell_by_rim`: hardness after Brinell by either diameter [kgf/mm2];
+      nan where the ball keeps more than 5 % of the permanent approach, or there is no such
+      diameter.
+    - `energy_returned`: work on the way back over that on the way in [-].
     """
 
     depth: float

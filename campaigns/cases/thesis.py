@@ -40,12 +40,8 @@ def coarse_to_fine(
 ) -> tuple[float, ...]:
     """Order values so that every beginning of the list covers their range evenly.
 
-    Parameters
-    ----------
-    values
-        All of them.
-    after
-        Those that come first anyway and are not repeated; by default the two ends are first.
+    `values`: all of them; `after`: those that come first anyway and are not repeated; by default
+    the two ends are first.
 
     Examples
     --------

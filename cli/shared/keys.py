@@ -37,12 +37,9 @@ _UNITS = {
 class Key(NamedTuple):
     """One key of a file.
 
-    Parameters
-    ----------
-    table
-        Where it stands, as in the file: `[target]`, or empty at the top.
-    name, meaning, allowed, default
-        What is written, what it says, what is accepted, and what holds without it.
+    - `table`: where it stands, as in the file: `[target]`, or empty at the top.
+    - `name`, `meaning`, `allowed`, `default`: what is written, what it says, what is accepted, and
+      what holds without it.
     """
 
     table: str

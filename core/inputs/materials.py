@@ -28,15 +28,11 @@ NUMBERS = ("E_Pa", "nu", "Sy_Pa", "hardness_Pa", "density_kg_m3")
 class Entry:
     """One material of the table.
 
-    Parameters
-    ----------
-    name, title, kind, also, note
-        Name in files, name for people, class of material, designations, what to beware of.
-    numbers
-        By key of `NUMBERS`: value, standard deviation, source.
-    laws
-        Hardening, rate and heat, where they were measured: the keys of a body's table `hardening`
-        or `rate`, of Johnson and Cook's softening, and the source.
+    - `name`, `title`, `kind`, `also`, `note`: name in files, name for people, class of material,
+      designations, what to beware of.
+    - `numbers`: by key of `NUMBERS`: value, standard deviation, source.
+    - `laws`: hardening, rate and heat, where they were measured: the keys of a body's table
+      `hardening` or `rate`, of Johnson and Cook's softening, and the source.
     """
 
     name: str

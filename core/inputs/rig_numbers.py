@@ -19,16 +19,11 @@ from ..material import Material
 class RigNumbers:
     """One immutable value of floats with an index by key.
 
-    Parameters
-    ----------
-    of
-        Every number by its key, for example `target.E_Pa` or `strikers.ball.mass_kg` [SI]. Of a
-        body also what follows: the strength from a hardness (`inf` where it does not yield), a
-        striker's radius, length between its tips (0 of a sphere) and inertia.
-    rigid
-        Tables of the bodies that do not deform.
-    metals
-        Name of each body's metal, by its table.
+    - `of`: every number by its key, for example `target.E_Pa` or `strikers.ball.mass_kg` [SI]. Of a
+      body also what follows: the strength from a hardness (`inf` where it does not yield), a
+      striker's radius, length between its tips (0 of a sphere) and inertia.
+    - `rigid`: tables of the bodies that do not deform.
+    - `metals`: name of each body's metal, by its table.
     """
 
     of: Mapping[str, float]

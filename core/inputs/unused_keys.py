@@ -11,13 +11,8 @@ _FOR_PEOPLE = frozenset({"name", "description", "source", "licence", "format", "
 def unused_keys(content: Mapping[str, Any], used: Collection[str]) -> list[str]:
     """Return `key = value` for each key of a file that is none of `used`.
 
-    Parameters
-    ----------
-    content
-        The file as it was read.
-    used
-        Keys with their tables; `NAME` stands for any name of a striker, and `KEY.std` for the
-        standard deviation of a quantity.
+    `content`: the file as it was read; `used`: keys with their tables; `NAME` stands for any name
+    of a striker, and `KEY.std` for the standard deviation of a quantity.
 
     Examples
     --------

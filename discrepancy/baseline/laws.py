@@ -44,18 +44,10 @@ def laws_of(
 ) -> tuple[dict[str, ContactLaw], tuple[str, ...]]:  # fmt: skip
     """Return the law of every striker's contact, and what a reader must know of it.
 
-    Parameters
-    ----------
-    recordings
-        The set, with the flow curves that it came with.
-    pairs
-        Striker to its two bodies as stated.
-    depths
-        Striker to Delta/R of the peaks of its impacts.
-    solve
-        Whether pairs are solved by finite elements.
-    progress
-        Called with a line before a solve.
+    - `recordings`: the set, with the flow curves that it came with.
+    - `pairs`: striker to its two bodies as stated.
+    - `depths`: striker to Delta/R of the peaks of its impacts.
+    - `solve`: whether pairs are solved by finite elements.
     """
     target = recordings.setup.target
     plain = without_curves(target)

@@ -32,19 +32,11 @@ def solved_pair(
 ) -> tuple[PairTable | None, tuple[str, ...]]:  # fmt: skip
     """Return the table of a pair, and why there is none where it could not be made.
 
-    Parameters
-    ----------
-    name
-        Of the set, for the notes.
-    pair
-        The bodies, with their flow curves; the radius does not matter.
-    depths
-        Delta/R of the peaks of the impacts.
-    progress
-        Called with a line before a solve, and as it goes on.
-    metal_error
-        Relative standard deviation of the force, of the metal to what is solved; the level of
-        accuracy is the coarsest that is off by less than a quarter of it.
+    - `name`: of the set, for the notes.
+    - `pair`: the bodies, with their flow curves; the radius does not matter.
+    - `depths`: Delta/R of the peaks of the impacts.
+    - `metal_error`: relative standard deviation of the force, of the metal to what is solved; the
+      level of accuracy is the coarsest that is off by less than a quarter of it.
     """
     low, high = (_rounded(d, math.ceil) for d in (min(depths), max(depths)))
     level = _level(pair, high, metal_error)
@@ -80,10 +72,7 @@ def solved_table(
 ) -> PairTable:  # fmt: skip
     """Solve a pair for impacts whose peaks reach Delta/R from `low` to `high`.
 
-    Raises
-    ------
-    InputError
-        It hardly yields there, or the solve does not reach that far.
+    Raises `InputError`: it hardly yields there, or the solve does not reach that far.
     """
     # loaded when there is something to solve: most diagnoses need none of it
     from ... import fem

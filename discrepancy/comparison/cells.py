@@ -23,14 +23,8 @@ from .conditions import Condition
 class Cells:
     """The measured numbers, m of them.
 
-    Parameters
-    ----------
-    condition, observable
-        Index of the condition and name of the observable.
-    value, std
-        Mean (of the logarithm where logarithmic) and its standard error.
-    count
-        Readings behind it.
+    `condition`, `observable`: index of the condition and name of the observable; `value`, `std`:
+    mean (of the logarithm where logarithmic) and its standard error; `count`: readings behind it.
     """
 
     condition: Indices
@@ -116,17 +110,11 @@ def cells_of(
 ) -> ReducedRepeats:
     """Return the cells of a set, and what its repeats say of themselves.
 
-    Parameters
-    ----------
-    readings
-        Every observable's values over the trials.
-    speeds, order
-        Normal speed [m/s] (load of a press [N]) and place in the order of testing of every trial,
-        shape (n,).
-    conditions
-        The nominal impacts.
-    varied
-        Entries of the columns `x_NAME` over the trials, by the column's name.
+    - `readings`: every observable's values over the trials.
+    - `speeds`, `order`: normal speed [m/s] (load of a press [N]) and place in the order of testing
+      of every trial, shape (n,).
+    - `conditions`: the nominal impacts.
+    - `varied`: entries of the columns `x_NAME` over the trials, by the column's name.
     """
     place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
     found = {name: _compared(name, r, speeds, place, conditions) for name, r in readings.items()}

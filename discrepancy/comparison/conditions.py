@@ -26,26 +26,17 @@ SPEED_FROM_HEIGHT = RULES.speed_from_height
 class Condition:
     """One nominal impact, or one quasi-static press.
 
-    Parameters
-    ----------
-    striker
-        Name of the striker.
-    speed, angle, tangential, spin
-        Mean motion just before touch [m/s, rad, m/s, rad/s]. The speed of a press is that at which
-        its striker's impact goes as deep: where conditions lie beside each other.
-    speed_spread, angle_spread
-        Standard error of the mean speed, or of a press's mean load, (fraction) and angle [rad].
-    trials
-        Rows of trials.csv.
-    around
-        What mechanisms may know.
-    after
-        The condition that struck the same place before; -1 on fresh metal.
-    press
-        Load and rate of a press; none of an impact.
-    setting, setting_spread
-        What was set once for all its trials, a height of fall, and the relative error of the speed
-        that follows from it: shared by all conditions of that setting.
+    - `speed`, `angle`, `tangential`, `spin`: mean motion just before touch [m/s, rad, m/s, rad/s].
+      The speed of a press is that at which its striker's impact goes as deep: where conditions lie
+      beside each other.
+    - `speed_spread`, `angle_spread`: standard error of the mean speed, or of a press's mean load,
+      (fraction) and angle [rad].
+    - `trials`: rows of trials.csv.
+    - `around`: what mechanisms may know.
+    - `after`: the condition that struck the same place before; -1 on fresh metal.
+    - `press`: load and rate of a press; none of an impact.
+    - `setting`, `setting_spread`: what was set once for all its trials, a height of fall, and the
+      relative error of the speed that follows from it: shared by all conditions of that setting.
     """
 
     striker: str

@@ -29,12 +29,7 @@ class _Relation(NamedTuple):
 def derived_columns(recordings: RecordingSet, readings: Mapping[str, Readings]) -> dict[str, str]:
     """Return the columns that say again what others do, and a note on each.
 
-    Parameters
-    ----------
-    recordings
-        The set.
-    readings
-        Every observable's values over the trials.
+    `readings`: every observable's values over the trials.
     """
     found = {}
     for relation in _relations(recordings, readings):

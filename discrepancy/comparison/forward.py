@@ -37,16 +37,10 @@ ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
 class Point:
     """Where to predict.
 
-    Parameters
-    ----------
-    z
-        (n_z,) standardised nuisances and law errors.
-    values
-        Numbers of every mechanism.
-    faster
-        Relative change of every condition's speed, of a press's load.
-    steeper
-        Change of every condition's angle [rad].
+    - `z`: (n_z,) standardised nuisances and law errors.
+    - `values`: numbers of every mechanism.
+    - `faster`: relative change of every condition's speed, of a press's load.
+    - `steeper`: change of every condition's angle [rad].
     """
 
     z: Array

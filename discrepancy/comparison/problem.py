@@ -169,14 +169,8 @@ class Problem:
     ) -> dict[str, Array]:
         """Return the striker's own motion, as it is read, where a second sphere is struck.
 
-        Parameters
-        ----------
-        seen
-            Column to (..., conditions) of the equivalent sphere: rebound, along the contact, spin.
-        z
-            (n_z,) unknowns.
-        scenes
-            That of each condition, as it touches.
+        `seen`: column to (..., conditions) of the equivalent sphere: rebound, along the contact,
+        spin; `z`: (n_z,) unknowns; `scenes`: that of each condition, as it touches.
         """
         second = second_of(self.rig_at(z))
         if second is None:
@@ -253,22 +247,12 @@ def problem_of(
 ) -> Problem:  # fmt: skip
     """Return what there is to compare in a recording set.
 
-    Parameters
-    ----------
-    recordings
-        The set.
-    law
-        Contact law of the baseline. None: finite elements of the set's own pair where a body has a
-        flow curve or the target asks for them, else the fitted law.
-    assume
-        Names of mechanisms that act whatever is found, beside those that the set names.
-    progress
-        Called with a line before a solve.
+    - `law`: contact law of the baseline. None: finite elements of the set's own pair where a body
+      has a flow curve or the target asks for them, else the fitted law.
+    - `assume`: names of mechanisms that act whatever is found, beside those that the set names.
 
-    Raises
-    ------
-    InputError
-        Nothing to compare, or what is assumed has no published numbers or cannot act here.
+    Raises `InputError`: nothing to compare, or what is assumed has no published numbers or cannot
+    act here.
     """
     setup, approach = recordings.setup, recordings.approach
     conditions = conditions_of(recordings)

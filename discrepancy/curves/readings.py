@@ -35,10 +35,7 @@ _ACCURACY = Settings(tolerance=1e-7)
 class Readings:
     """Values of one observable over the trials.
 
-    Parameters
-    ----------
-    value, std
-        (n,) NaN where there is none.
+    `value`, `std`: (n,) NaN where there is none.
     """
 
     value: Array
@@ -52,12 +49,7 @@ def readings_of(
 
     A number in trials.csv goes before the same number from a curve.
 
-    Parameters
-    ----------
-    recordings
-        The set.
-    scenes
-        The baseline's scene of every trial.
+    `scenes`: the baseline's scene of every trial.
     """
     found = {
         name: Readings(recordings.values(name).copy(), recordings.std(name).copy())
@@ -200,16 +192,8 @@ def reduced(
 ) -> dict[str, tuple[float, float]]:
     """Return the numbers of a curve, each with its standard deviation.
 
-    Parameters
-    ----------
-    curve
-        Columns by name, each of shape (k,).
-    noise
-        Standard deviation of each noisy column.
-    reduce
-        `from_trace` or `from_profile`.
-    seed
-        Of the noise that is added again.
+    `curve`: columns by name, each of shape (k,); `noise`: standard deviation of each noisy column;
+    `reduce`: `from_trace` or `from_profile`; `seed`: of the noise that is added again.
     """
     best = reduce(curve)
     if not best:

@@ -26,16 +26,8 @@ BENCH = RULES.bench
 class Candidate:
     """One trial.
 
-    Parameters
-    ----------
-    change
-        In words.
-    condition
-        The impact.
-    built
-        Numbers of a striker that is to be built; none for one of the set's own.
-    like
-        The set's striker of whose metal it is; itself if nothing is built.
+    `built`: numbers of a striker that is to be built; none for one of the set's own; `like`: the
+    set's striker of whose metal it is; itself if nothing is built.
     """
 
     change: str

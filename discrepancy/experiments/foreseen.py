@@ -59,19 +59,11 @@ def foreseen(
 ) -> Foreseen:  # fmt: skip
     """Return what the further cells of a wider problem would show under an explanation.
 
-    Parameters
-    ----------
-    simulator
-        The problem that was fitted, of m cells.
-    wider
-        The same with n more cells after its own, whose values are not looked at.
-    fitted
-        The explanation.
-    rng
-        Draws samples of the mechanisms' parameters.
-    settled
-        Numbers of the sheet that are measured again: ln of each, over what is stated, stands
-        behind the cells.
+    - `simulator`: the problem that was fitted, of m cells.
+    - `wider`: the same with n more cells after its own, whose values are not looked at.
+    - `rng`: draws samples of the mechanisms' parameters.
+    - `settled`: numbers of the sheet that are measured again: ln of each, over what is stated,
+      stands behind the cells.
     """
     whole, known = simulator.of(wider), len(simulator.problem.cells)
     z, values = fitted.z, fitted.grid.values(fitted.place)

@@ -71,14 +71,7 @@ def propose(
 ) -> Proposed:
     """Return what to do next.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    ranking, odds
-        The explanations and their probabilities.
-    rng
-        Draws the posterior's samples.
+    `ranking`, `odds`: the explanations and their probabilities.
     """
     rivals = rivals_of(ranking, odds)
     if len(rivals) < 2:

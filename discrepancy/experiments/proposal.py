@@ -15,25 +15,16 @@ from ..rules import RULES
 class Proposal:
     """What to do, how well it would discriminate, and what it would do to the interval.
 
-    Parameters
-    ----------
-    change
-        In words.
-    expected_discrimination
-        D averaged over the rivals; 0 where there are none.
-    kind
-        `trial`, `press`, `build`, `noise`, `observable`, `hardness`, `weigh`, `calliper` or `none`.
-    information
-        Nats by which the entropy of which rival is true is expected to fall.
-    interval
-        Width of the leading parameter's interval over that of today; nan where not worked out.
-    trial
-        Striker, speed [m/s] and angle [degrees] of a trial, mass [kg] and tip radius [m], repeats;
-        of a press its load [N]; of a number of the sheet its key.
-    observable
-        What to measure as well, of a proposal of that kind.
-    minutes
-        How long it takes; nan where there is nothing to do.
+    - `expected_discrimination`: D averaged over the rivals; 0 where there are none.
+    - `kind`: `trial`, `press`, `build`, `noise`, `observable`, `hardness`, `weigh`, `calliper` or
+      `none`.
+    - `information`: nats by which the entropy of which rival is true is expected to fall.
+    - `interval`: width of the leading parameter's interval over that of today; nan where not worked
+      out.
+    - `trial`: striker, speed [m/s] and angle [degrees] of a trial, mass [kg] and tip radius [m],
+      repeats; of a press its load [N]; of a number of the sheet its key.
+    - `observable`: what to measure as well, of a proposal of that kind.
+    - `minutes`: how long it takes; nan where there is nothing to do.
     """
 
     change: str

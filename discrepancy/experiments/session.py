@@ -33,14 +33,8 @@ class Option(NamedTuple):
 class Telling(NamedTuple):
     """What the most telling reading would mean.
 
-    Parameters
-    ----------
-    step
-        Which of the session's steps reads it.
-    read
-        Observable, or the key of a number of the sheet.
-    expected
-        Explanation to the mean and standard deviation of it, as cells are compared.
+    `step`: which of the session's steps reads it; `read`: observable, or the key of a number of the
+    sheet; `expected`: explanation to the mean and standard deviation of it, as cells are compared.
     """
 
     step: int
@@ -52,20 +46,12 @@ class Telling(NamedTuple):
 class Session:
     """What to do in one session.
 
-    Parameters
-    ----------
-    steps
-        In the order in which strikers are changed least.
-    minutes, length
-        How long they take, and a session is.
-    information
-        Nats by which the entropy of which rival is true is expected to fall.
-    entropy
-        Of today [nat].
-    outcomes
-        The most telling reading, and what it would mean.
-    elsewhere
-        Where nothing is worth it: what another rig could do that is.
+    - `steps`: in the order in which strikers are changed least.
+    - `minutes`, `length`: how long they take, and a session is.
+    - `information`: nats by which the entropy of which rival is true is expected to fall.
+    - `entropy`: of today [nat].
+    - `outcomes`: the most telling reading, and what it would mean.
+    - `elsewhere`: where nothing is worth it: what another rig could do that is.
     """
 
     steps: tuple[Proposal, ...] = ()
@@ -98,14 +84,7 @@ def chosen(
 ) -> list[int]:  # fmt: skip
     """Return which of so many options are worth most together within a budget.
 
-    Parameters
-    ----------
-    count
-        Number of options.
-    gain, cost
-        Of some of them together.
-    budget
-        What they may cost.
+    `gain`, `cost`: of some of them together; `budget`: what they may cost.
     """
     single = [gain([k]) for k in range(count)]
     picked: list[int] = []
@@ -137,18 +116,11 @@ def session_of(
 ) -> Session:  # fmt: skip
     """Return the session that is expected to tell most.
 
-    Parameters
-    ----------
-    bench
-        What the rig can do.
-    options
-        What could be done with it.
-    seen
-        What all cells would show under each rival.
-    rivals
-        Explanation to its probability.
-    reads
-        Observable or key of each cell.
+    - `bench`: what the rig can do.
+    - `options`: what could be done with it.
+    - `seen`: what all cells would show under each rival.
+    - `rivals`: explanation to its probability.
+    - `reads`: observable or key of each cell.
     """
     weight = np.array(list(rivals.values()))
     # a verdict is sure by so much too much: what leads is tested too

@@ -25,12 +25,8 @@ FORMS = Sizes(
 def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
     """Noise of the cells, with what errors of speed, angle and setting add, shape (m, m).
 
-    Parameters
-    ----------
-    problem
-        Cells and conditions.
-    by_speed, by_angle
-        (m,) derivative of each cell by its condition's relative speed and angle.
+    `by_speed`, `by_angle`: (m,) derivative of each cell by its condition's relative speed and
+    angle.
     """
     k = problem.cells.condition
     same = k[:, None] == k[None, :]
@@ -55,14 +51,8 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
     when they are fitted to each other: half of the variance alike in all observables, half in each
     by itself, smooth over what varies but for a tenth.
 
-    Parameters
-    ----------
-    problem
-        Cells and conditions.
-    effect
-        (m,) change of the cells by the mechanism.
-    share
-        Standard deviation, as a share of the effect.
+    `effect`: (m,) change of the cells by the mechanism; `share`: standard deviation, as a share of
+    the effect.
     """
     smooth = (1.0 - RULES.form_rough) * nearness(problem, RULES.form_length)
     alike = smooth * (0.5 + 0.5 * same_observable(problem)) + RULES.form_rough * np.eye(len(effect))

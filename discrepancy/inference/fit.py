@@ -28,36 +28,21 @@ from .together import refined
 class Fit:
     """A fitted explanation.
 
-    Parameters
-    ----------
-    mechanisms
-        Its mechanisms; empty for the baseline.
-    grid, weight
-        Refined grid of their parameters and posterior weights (k,).
-    place
-        Most probable place (axes,).
-    z, covariance
-        Posterior mean (n_z,) and covariance of the unknowns there.
-    prediction
-        (m,) cells at `place` and `z`.
-    log_evidence
-        ln of the mean likelihood over the priors.
-    chi2
-        r^T Sigma^-1 r at `place`.
-    linear
-        Algebra at the expansion point, with the likeliest size of the model's error.
-    residual
-        (m,) data minus prediction at the prior mean, with the mechanism at `place`.
-    here
-        (m,) prediction at the expansion point.
-    log_likelihood
-        (k,) over the refined grid.
-    residuals
-        (k, m) as `residual`, over the refined grid.
-    expanded
-        (n_z,) unknowns at the expansion point.
-    mixture
-        The algebra with the model's error of every size; `linear` is that of the likeliest.
+    - `mechanisms`: its mechanisms; empty for the baseline.
+    - `grid`, `weight`: refined grid of their parameters and posterior weights (k,).
+    - `place`: most probable place (axes,).
+    - `z`, `covariance`: posterior mean (n_z,) and covariance of the unknowns there.
+    - `prediction`: (m,) cells at `place` and `z`.
+    - `log_evidence`: ln of the mean likelihood over the priors.
+    - `chi2`: r^T Sigma^-1 r at `place`.
+    - `linear`: algebra at the expansion point, with the likeliest size of the model's error.
+    - `residual`: (m,) data minus prediction at the prior mean, with the mechanism at `place`.
+    - `here`: (m,) prediction at the expansion point.
+    - `log_likelihood`: (k,) over the refined grid.
+    - `residuals`: (k, m) as `residual`, over the refined grid.
+    - `expanded`: (n_z,) unknowns at the expansion point.
+    - `mixture`: the algebra with the model's error of every size; `linear` is that of the
+      likeliest.
     """
 
     mechanisms: tuple[Mechanism, ...]
@@ -104,21 +89,11 @@ def fit(
 ) -> Fit:
     """Fit an explanation.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    mechanisms
-        The explanation.
-    start
-        A fit whose unknowns to start from.
-    place
-        Where in the mechanisms' priors to start; a place of the refined grid.
-    rounds
-        Largest number of Gauss-Newton rounds.
-    effect
-        (k, m) change of the cells over the refined grid, if known from a first pass: used, and
-        brought to the simulation at the expansion point, until the last round.
+    - `start`: a fit whose unknowns to start from.
+    - `place`: where in the mechanisms' priors to start; a place of the refined grid.
+    - `rounds`: largest number of Gauss-Newton rounds.
+    - `effect`: (k, m) change of the cells over the refined grid, if known from a first pass: used,
+      and brought to the simulation at the expansion point, until the last round.
     """
     problem = simulator.problem
     grid = grid_of(problem, mechanisms)
@@ -184,14 +159,8 @@ def tried_steps(
     places that both fit worse than what lies between them: the part of the step is gone that the
     simulation itself likes best, and none where it likes none.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    found
-        The fit expanded at z and place.
-    z, place
-        (n_z,) unknowns and (axes,) place of this round.
+    `found`: the fit expanded at z and place; `z`, `place`: (n_z,) unknowns and (axes,) place of
+    this round.
     """
     whole, settled = moved_towards(found, z, place)
     if settled:

@@ -35,12 +35,8 @@ class Axis(NamedTuple):
 class Grid:
     """A tensor grid over the mechanisms' parameters, and how to refine it.
 
-    Parameters
-    ----------
-    axes
-        Whose parameter runs along each.
-    window
-        Part of the prior that it covers, (low, high) within (0, 1) for each axis; all if empty.
+    `axes`: whose parameter runs along each; `window`: part of the prior that it covers, (low, high)
+    within (0, 1) for each axis; all if empty.
     """
 
     axes: tuple[Axis, ...]
@@ -146,14 +142,7 @@ def posterior(log_likelihood: Array) -> tuple[float, Array]:
 def interval(edges: Array, weight: Array, level: float = 0.90) -> tuple[float, float, float]:
     """Return median and bounds of the central interval of a density that is flat within cells.
 
-    Parameters
-    ----------
-    edges
-        (n + 1,) of the cells.
-    weight
-        (n,) in each of them.
-    level
-        Of the interval.
+    `edges`: (n + 1,) of the cells; `weight`: (n,) in each of them; `level`: of the interval.
     """
     reach = np.concatenate([[0.0], np.cumsum(weight)])
     tail = 0.5 - 0.5 * level

@@ -23,14 +23,7 @@ from .linear import Linear
 class Whole:
     """All cells of residuals (k, m), for one algebra.
 
-    Parameters
-    ----------
-    precision
-        Q, (m, m).
-    solved
-        Q r, (k, m).
-    squares
-        r^T Q r, (k,).
+    `precision`: Q, (m, m); `solved`: Q r, (k, m); `squares`: r^T Q r, (k,).
     """
 
     precision: Array

@@ -27,16 +27,10 @@ from ...core.arrays import Array
 class Linear:
     """Sigma and J at one expansion point.
 
-    Parameters
-    ----------
-    noise
-        (m, m) covariance of the cells.
-    J
-        (m, n_z) derivatives by the unknowns.
-    form
-        (m, c) components of the error of the mechanism's form; none for the baseline.
-    prior
-        (n_z,) prior standard deviations of the unknowns; 1 each where empty.
+    - `noise`: (m, m) covariance of the cells.
+    - `J`: (m, n_z) derivatives by the unknowns.
+    - `form`: (m, c) components of the error of the mechanism's form; none for the baseline.
+    - `prior`: (n_z,) prior standard deviations of the unknowns; 1 each where empty.
     """
 
     noise: Array
@@ -110,12 +104,7 @@ ONE = Sizes((1.0,), (1.0,))
 class Mixture:
     """The same algebra with model errors of several sizes, by their prior weights.
 
-    Parameters
-    ----------
-    parts
-        One for each size.
-    log_weight
-        (sizes,) ln of the prior weights.
+    `parts`: one for each size; `log_weight`: (sizes,) ln of the prior weights.
     """
 
     parts: tuple[Linear, ...]
@@ -125,14 +114,9 @@ class Mixture:
     def of(cls, linear: Linear, fixed: int, sizes: Sizes, forms: Sizes = ONE) -> Mixture:
         """Return the algebra with model errors of several sizes.
 
-        Parameters
-        ----------
-        linear
-            The algebra with all of size 1.
-        fixed
-            Number of unknowns, the first, that are no error of the law.
-        sizes, forms
-            Of the law's error, and of that of the mechanism's form.
+        - `linear`: the algebra with all of size 1.
+        - `fixed`: number of unknowns, the first, that are no error of the law.
+        - `sizes`, `forms`: of the law's error, and of that of the mechanism's form.
         """
         n = linear.J.shape[1]
         if n <= fixed:

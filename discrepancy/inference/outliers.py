@@ -24,12 +24,7 @@ WIDER = RULES.outlier_wider
 def outlying(problem: Problem, judge: Fit) -> Mask:
     """Return the mask (m,) of the values that an explanation cannot hold one by one.
 
-    Parameters
-    ----------
-    problem
-        Cells and conditions.
-    judge
-        Fit of the explanation.
+    `judge`: fit of the explanation.
     """
     residual, total = judge.residual, judge.linear.total
     found = np.zeros(len(residual), dtype=bool)

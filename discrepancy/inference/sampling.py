@@ -44,16 +44,7 @@ def confirm_evidence(
 ) -> dict[str, float]:
     """Return the sampled ln evidence of each explanation, less that of the first.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    fits
-        Explanations, the baseline first.
-    rng
-        Source of the draws.
-    progress
-        Called with a line before each explanation.
+    `fits`: explanations, the baseline first.
     """
     found = {}
     for fitted in fits:

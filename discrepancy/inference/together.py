@@ -34,18 +34,10 @@ def mutual(
 ) -> Array:  # fmt: skip
     """Return what two mechanisms do to each other over the refined grid, (k, m).
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    mechanisms
-        The two.
-    grid
-        Of both; beyond the corners the mutual effect is that at the nearest of them.
-    corners
-        Two or three places of each axis, where it is simulated.
-    z
-        Unknowns (n_z,).
+    - `mechanisms`: the two.
+    - `grid`: of both; beyond the corners the mutual effect is that at the nearest of them.
+    - `corners`: two or three places of each axis, where it is simulated.
+    - `z`: unknowns (n_z,).
     """
     first, second = split(grid, mechanisms)
     n = len(first.axes)
@@ -79,12 +71,8 @@ def refined(
     its own nodes and both at the window's corners; the sum is brought to the prediction at the
     place.
 
-    Parameters
-    ----------
-    simulator, mechanisms, grid, z
-        The problem, what acts, the grid of its parameters, and the unknowns (n_z,).
-    place, here
-        A place (axes,), and the prediction there (m,).
+    `simulator`, `mechanisms`, `grid`, `z`: the problem, what acts, the grid of its parameters, and
+    the unknowns (n_z,); `place`, `here`: a place (axes,), and the prediction there (m,).
     """
     if len(mechanisms) != 2 or len(grid.axes) <= RULES.tensor or not grid.window:
         return grid.refine(responses_at(simulator, mechanisms, grid, z))

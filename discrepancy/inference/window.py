@@ -18,14 +18,7 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     their distance, neither the simulation between them nor the interval can be trusted. The window
     follows the most probable place, and shrinks to a few standard deviations about it.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    fitted
-        A fit with mechanisms.
-    rounds
-        Largest number of windows, at least 1.
+    `fitted`: a fit with mechanisms; `rounds`: largest number of windows, at least 1.
     """
     grid, z, place = fitted.grid, fitted.z, fitted.place
     spread = _spread(fitted)

@@ -59,29 +59,19 @@ _FROZEN = 1e-9  # prior deviation of what the curve itself stands for
 class Metal:
     """The flow curve of a body from its marks.
 
-    Parameters
-    ----------
-    name, body
-        Of the set; key of the body's table.
-    strength
-        As stated [Pa]: the curve's unit.
-    mean, covariance
-        (n,) and (n, n) posterior of what the fit moves: logarithm of stress over `strength` at 0.2
-        %, exponents at the nodes, the rate law where impacts left marks (of the rise ln(1 + rise)),
-        then the nuisances.
-    map
-        (nodes, n) from these to the logarithms at the nodes.
-    rated
-        Whether impacts left marks.
-    pressed, struck
-        How many numbers came from presses and from impacts.
-    strain, stress, error, press
-        (m,) of every mark: representative strain, the stress [Pa] at which it lies on the law, its
-        relative error by the reading alone, and whether it is a press's.
-    next
-        The press that would narrow the stresses most; none where nothing would.
-    notes
-        What a reader must know.
+    - `name`, `body`: of the set; key of the body's table.
+    - `strength`: as stated [Pa]: the curve's unit.
+    - `mean`, `covariance`: (n,) and (n, n) posterior of what the fit moves: logarithm of stress
+      over `strength` at 0.2 %, exponents at the nodes, the rate law where impacts left marks (of
+      the rise ln(1 + rise)), then the nuisances.
+    - `map`: (nodes, n) from these to the logarithms at the nodes.
+    - `rated`: whether impacts left marks.
+    - `pressed`, `struck`: how many numbers came from presses and from impacts.
+    - `strain`, `stress`, `error`, `press`: (m,) of every mark: representative strain, the stress
+      [Pa] at which it lies on the law, its relative error by the reading alone, and whether it is a
+      press's.
+    - `next`: the press that would narrow the stresses most; none where nothing would.
+    - `notes`: what a reader must know.
     """
 
     name: str
@@ -138,15 +128,10 @@ class Metal:
 def metal_of(recordings: RecordingSet) -> Metal:
     """Return the flow curve that a set's marks speak for.
 
-    Parameters
-    ----------
-    recordings
-        The set; a flow curve that it states is not used.
+    `recordings`: the set; a flow curve that it states is not used.
 
-    Raises
-    ------
-    InputError
-        No marks, a metal that does not yield, or marks that say nothing of the body that does.
+    Raises `InputError`: no marks, a metal that does not yield, or marks that say nothing of the
+    body that does.
     """
     if not recordings.setup.target.yields:
         raise InputError("a baseline that does not yield", source=recordings.name,

@@ -55,14 +55,9 @@ def next_mark(
 ) -> NextMark | None:
     """Return the press whose marks would lower the errors of the told stresses most.
 
-    Parameters
-    ----------
-    problem, known
-        From `with_marks`, and how many of its cells were measured.
-    rows
-        (3, n) from the unknowns to the logarithms of the stresses that are told.
-    covariance, J
-        Of the unknowns (n, n), and what they do to all cells (m, n).
+    - `problem`, `known`: from `with_marks`, and how many of its cells were measured.
+    - `rows`: (3, n) from the unknowns to the logarithms of the stresses that are told.
+    - `covariance`, `J`: of the unknowns (n, n), and what they do to all cells (m, n).
     """
     before = np.einsum("ij,jk,ik->i", rows, covariance, rows)
     best: tuple[float, NextMark] | None = None

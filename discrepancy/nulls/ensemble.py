@@ -17,14 +17,8 @@ from .press import press
 class NullRig:
     """Conditions in plain numbers.
 
-    Parameters
-    ----------
-    bodies
-        Strikers before touch, one a condition.
-    references
-        The baseline's curve of each condition.
-    loads
-        (conditions,) largest load of each press [N]; nan of an impact.
+    `bodies`: strikers before touch, one a condition; `references`: the baseline's curve of each
+    condition; `loads`: (conditions,) largest load of each press [N]; nan of an impact.
     """
 
     bodies: NullBodies
@@ -37,17 +31,8 @@ def discrepancies(
 ) -> dict[str, Array]:
     """Return observables of `count` null laws, each of shape (count, conditions).
 
-    Parameters
-    ----------
-    rig
-        What strikes what.
-    count
-        Number of laws drawn.
-    rng
-        Source of the draws.
-    size
-        Standard deviations of the levels of force and recovery and of their slopes, and the
-        largest rms distances of their shapes.
+    `rig`: what strikes what; `size`: standard deviations of the levels of force and recovery and of
+    their slopes, and the largest rms distances of their shapes.
     """
     n = len(rig.references)
     contacts = list(dict.fromkeys(rig.references))

@@ -30,15 +30,10 @@ KINDS = ("cut-off", "logarithmic", "series")
 class NullCurve:
     """A law of one contact as tables over the depth, for fast evaluation of many impacts.
 
-    Parameters
-    ----------
-    log_depth
-        (k,) equally spaced logarithms [ln m].
-    log_force, recovery, crater, radius
-        (k,) loading force [ln N]; elastic recovery and crater depth after a peak there, radius of
-        the contact [m].
-    power
-        Exponent of the recovery.
+    - `log_depth`: (k,) equally spaced logarithms [ln m].
+    - `log_force`, `recovery`, `crater`, `radius`: (k,) loading force [ln N]; elastic recovery and
+      crater depth after a peak there, radius of the contact [m].
+    - `power`: exponent of the recovery.
     """
 
     log_depth: Array
@@ -53,19 +48,14 @@ class NullCurve:
 class NullReference:
     """The baseline's curve of one contact: what a law is levelled to.
 
-    Parameters
-    ----------
-    R, E, Y
-        Radius [m], reduced modulus [Pa], strength of the weaker body [Pa] (inf: elastic).
-    depth, force, recovery, crater, radius
-        (k,) at depths of a wide range [m, N, m, m, m].
-    given_back
-        Share of the elastic work that returns, for bodies without a yield strength.
-    lost
-        (k,) share of the work that the baseline keeps: laws differ by a part of that; by all that
-        they differ where it is not given.
-    low, high
-        Depths between which the impacts of this contact move [m].
+    - `R`, `E`, `Y`: radius [m], reduced modulus [Pa], strength of the weaker body [Pa] (inf:
+      elastic).
+    - `depth`, `force`, `recovery`, `crater`, `radius`: (k,) at depths of a wide range [m, N, m, m,
+      m].
+    - `given_back`: share of the elastic work that returns, for bodies without a yield strength.
+    - `lost`: (k,) share of the work that the baseline keeps: laws differ by a part of that; by all
+      that they differ where it is not given.
+    - `low`, `high`: depths between which the impacts of this contact move [m].
     """
 
     R: float
@@ -86,20 +76,13 @@ class NullReference:
 class Draw:
     """Constants of one null law.
 
-    Parameters
-    ----------
-    kind
-        One of `KINDS`.
-    a, b, c
-        Shape constants, uniform in (0, 1).
-    level, back
-        Logarithmic offset and slope over ln(depth) of force and of recovery.
-    power
-        Offset of the recovery's exponent.
-    stray
-        Largest rms distance of the shapes of force and of recovery from the reference (logarithm).
-    dent, wide
-        As `level`, of the crater and of the contact's radius at a force.
+    - `kind`: one of `KINDS`.
+    - `a`, `b`, `c`: shape constants, uniform in (0, 1).
+    - `level`, `back`: logarithmic offset and slope over ln(depth) of force and of recovery.
+    - `power`: offset of the recovery's exponent.
+    - `stray`: largest rms distance of the shapes of force and of recovery from the reference
+      (logarithm).
+    - `dent`, `wide`: as `level`, of the crater and of the contact's radius at a force.
     """
 
     kind: str

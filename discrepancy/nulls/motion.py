@@ -21,21 +21,14 @@ _NULL_MOST_STEPS = 6000
 class NullBodies:
     """Strikers just before touch, arrays of shape (n,), SI.
 
-    Parameters
-    ----------
-    mass, inertia
-        [kg, kg m^2].
-    beside, above, tip
-        How far the centre of mass lies beside and above the contact point, and that of the tip
-        above it [m].
-    normal, tangential, spin
-        Approach of the contact point (positive), velocity of the centre along +x, rotation.
-    friction
-        Coefficient [-].
-    given_back
-        Share of the elastic work that returns.
-    scan
-        Depth at which a scan ends a mark [m].
+    - `mass`, `inertia`: [kg, kg m^2].
+    - `beside`, `above`, `tip`: how far the centre of mass lies beside and above the contact point,
+      and that of the tip above it [m].
+    - `normal`, `tangential`, `spin`: approach of the contact point (positive), velocity of the
+      centre along +x, rotation.
+    - `friction`: coefficient [-].
+    - `given_back`: share of the elastic work that returns.
+    - `scan`: depth at which a scan ends a mark [m].
     """
 
     mass: Array

@@ -13,12 +13,7 @@ from .laws import NullCurve
 def press(loads: Array, curves: Sequence[NullCurve]) -> dict[str, Array]:
     """Return the observables of n presses, each of shape (n,).
 
-    Parameters
-    ----------
-    loads
-        (n,) largest loads [N].
-    curves
-        The law of each contact, n of them.
+    `loads`: (n,) largest loads [N]; `curves`: the law of each contact, n of them.
     """
     x, crater, radius, back = np.empty((4, len(loads)))
     for i, (load, c) in enumerate(zip(loads, curves, strict=True)):

@@ -47,16 +47,10 @@ def comparison(
 ) -> str:
     """Return measured beside the simulations, and the differences below, for one observable.
 
-    Parameters
-    ----------
-    points
-        Numbers of one observable.
-    against
-        What the axis shows.
-    strikers
-        All strikers of the report, for their markers.
-    key
-        Begins the ids of the figure's elements; no other figure of the page has it.
+    - `points`: numbers of one observable.
+    - `against`: what the axis shows.
+    - `strikers`: all strikers of the report, for their markers.
+    - `key`: begins the ids of the figure's elements; no other figure of the page has it.
     """
     row = OBSERVABLES[points[0].observable]
     upper, lower, left = _plots(points, against)

@@ -35,17 +35,7 @@ class Panel:
 def write_report(verdict: Verdict, path: Path) -> tuple[Path, ...]:
     """Write the report, and beside it what its figures show as JSON and CSV.
 
-    Parameters
-    ----------
-    verdict
-        From `diagnose`.
-    path
-        Of the HTML file.
-
-    Returns
-    -------
-    tuple of Path
-        The files that were written.
+    Returned: the files that were written.
     """
     story = story_of(verdict)
     numbers = json.dumps(_finite(story.to_dict()), indent=1, allow_nan=False)

@@ -21,14 +21,7 @@ STATED, WITHOUT, WITH = "as stated", "best without anything missing", "with the 
 class Against(NamedTuple):
     """Something that varies over the conditions.
 
-    Parameters
-    ----------
-    key
-        Name in files.
-    label
-        Text of an axis.
-    values
-        (conditions,) in the label's unit.
+    `key`: name in files; `label`: text of an axis; `values`: (conditions,) in the label's unit.
     """
 
     key: str
@@ -40,24 +33,14 @@ class Against(NamedTuple):
 class SeriesPoint:
     """One number of the comparison, in the units that people read.
 
-    Parameters
-    ----------
-    observable, unit, striker
-        What, in which unit, of whom.
-    condition, trials
-        Number of the condition, from 1, and trials behind the mean.
-    x
-        What varies, by the key of `Against`.
-    measured, low, high
-        Mean of the repeats and its standard error on both sides.
-    as_stated
-        Simulated with every number as stated.
-    best_without
-        Simulated with the numbers moved as far as it takes, nothing added.
-    with_verdict
-        The same with the mechanisms that are named; nan without any.
-    weight
-        Whether it counts: a value far off everything else does not.
+    - `observable`, `unit`, `striker`: what, in which unit, of whom.
+    - `condition`, `trials`: number of the condition, from 1, and trials behind the mean.
+    - `x`: what varies, by the key of `Against`.
+    - `measured`, `low`, `high`: mean of the repeats and its standard error on both sides.
+    - `as_stated`: simulated with every number as stated.
+    - `best_without`: simulated with the numbers moved as far as it takes, nothing added.
+    - `with_verdict`: the same with the mechanisms that are named; nan without any.
+    - `weight`: whether it counts: a value far off everything else does not.
     """
 
     observable: str

@@ -59,33 +59,21 @@ class ToldCells(NamedTuple):
 class Story:
     """Everything that a report says.
 
-    Parameters
-    ----------
-    name, finding, why, summary
-        The set, the finding in one sentence, why in three, and what was compared.
-    points, against, strikers
-        What is drawn, against what, and who struck.
-    series
-        The three simulations that are drawn, each with what its fit took.
-    misses, audit, reasons, notes
-        Sentences: where the simulation misses, contradictions of the inputs, how the verdict came
-        about, what was assumed.
-    nowhere
-        What to think of it where places and verdict seem to contradict each other.
-    parts, explanations
-        Probability of each mechanism to take part, and of each explanation.
-    found
-        Numbers of the mechanisms that are named, with intervals.
-    prediction
-        How the trials kept out of the fit are predicted, in one sentence.
-    doubt
-        What the uncertainty of the comparison is made of.
-    numbers, scores, excluded, limits
-        Tables for those who want to know.
-    next_step, further
-        Whether to go on; steps of the next session, and what its outcome would mean.
-    changed
-        What the last session changed.
+    - `name`, `finding`, `why`, `summary`: the set, the finding in one sentence, why in three, and
+      what was compared.
+    - `points`, `against`, `strikers`: what is drawn, against what, and who struck.
+    - `series`: the three simulations that are drawn, each with what its fit took.
+    - `misses`, `audit`, `reasons`, `notes`: sentences: where the simulation misses, contradictions
+      of the inputs, how the verdict came about, what was assumed.
+    - `nowhere`: what to think of it where places and verdict seem to contradict each other.
+    - `parts`, `explanations`: probability of each mechanism to take part, and of each explanation.
+    - `found`: numbers of the mechanisms that are named, with intervals.
+    - `prediction`: how the trials kept out of the fit are predicted, in one sentence.
+    - `doubt`: what the uncertainty of the comparison is made of.
+    - `numbers`, `scores`, `excluded`, `limits`: tables for those who want to know.
+    - `next_step`, `further`: whether to go on; steps of the next session, and what its outcome
+      would mean.
+    - `changed`: what the last session changed.
     """
 
     name: str

@@ -39,12 +39,7 @@ def covariates(problem: Problem) -> dict[str, Array]:
 def nearness(problem: Problem, length: float) -> Array:
     """Squared-exponential covariance of the cells by their conditions alone, (m, m).
 
-    Parameters
-    ----------
-    problem
-        Cells and conditions.
-    length
-        Correlation length, in standard deviations of each covariate.
+    `length`: correlation length, in standard deviations of each covariate.
     """
     # a form that is off is so in presses as well
     varied = [x for name, x in covariates(problem).items() if name != PRESSED]

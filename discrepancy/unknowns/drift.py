@@ -22,16 +22,10 @@ from ..rules import RULES
 class Drift:
     """Change of one observable over the order of testing.
 
-    Parameters
-    ----------
-    observable
-        Which.
-    change
-        From the first trial to the last; logarithmic where cells are, else in the cells' unit.
-    z
-        The change over its standard error.
-    log_p
-        Ln of the chance that noise alone changes one of the observables tested by as much.
+    - `change`: from the first trial to the last; logarithmic where cells are, else in the cells'
+      unit.
+    - `z`: the change over its standard error.
+    - `log_p`: Ln of the chance that noise alone changes one of the observables tested by as much.
     """
 
     observable: str
@@ -45,14 +39,8 @@ def drift_of(
 ) -> Drift | None:
     """Return the drift of one observable, or none that chance would not give.
 
-    Parameters
-    ----------
-    observable
-        Its name.
-    repeats
-        For each condition: order of testing from 0 to 1, value, standard deviation, each (n,).
-    observables
-        How many are tested.
+    `repeats`: for each condition: order of testing from 0 to 1, value, standard deviation, each
+    (n,); `observables`: how many are tested.
     """
     x, y, s = [], [], []
     for order, value, std in repeats:

@@ -28,14 +28,9 @@ _SURE_OF = 10**6  # degrees of freedom of a stated noise where entries have no r
 class Followed:
     """A column that an observable follows.
 
-    Parameters
-    ----------
-    column, observable
-        Which, of which.
-    span
-        Largest difference between entries at one condition; logarithmic where cells are.
-    log_p
-        Ln of the chance that noise alone differs by as much in one of all that were tested.
+    - `column`, `observable`: which, of which.
+    - `span`: largest difference between entries at one condition; logarithmic where cells are.
+    - `log_p`: Ln of the chance that noise alone differs by as much in one of all that were tested.
     """
 
     column: str
@@ -57,14 +52,7 @@ def followed_of(
 ) -> Followed | None:
     """Return how an observable follows a column, or none where chance would do the same.
 
-    Parameters
-    ----------
-    column, observable
-        Names.
-    repeats
-        One for each condition.
-    tested
-        How many columns and observables are tested.
+    `repeats`: one for each condition; `tested`: how many columns and observables are tested.
     """
     between = within = span = 0.0
     free, left = 0, 0

@@ -57,13 +57,9 @@ _FIRST, _LAST = math.log(3e-5), math.log(0.2)
 class Spread:
     """How unsure the law of one striker's contact is.
 
-    Parameters
-    ----------
-    law, metal
-        Kind to standard deviations over the depth nodes, (NODES,): of the law to the finite
-        elements, and of perfect plasticity to a metal.
-    reached
-        ln(depth/R) of the peaks of this striker's impacts, (n,).
+    - `law`, `metal`: kind to standard deviations over the depth nodes, (NODES,): of the law to the
+      finite elements, and of perfect plasticity to a metal.
+    - `reached`: ln(depth/R) of the peaks of this striker's impacts, (n,).
     """
 
     law: Mapping[str, Array]
@@ -89,13 +85,9 @@ class Spread:
 class LawError:
     """Components of the law's error.
 
-    Parameters
-    ----------
-    force, recovery, crater, radius
-        (k, NODES) unit components over the depth nodes; none of the radius where no dent's
-        diameter was measured.
-    spreads
-        Striker to how unsure its contact is.
+    - `force`, `recovery`, `crater`, `radius`: (k, NODES) unit components over the depth nodes; none
+      of the radius where no dent's diameter was measured.
+    - `spreads`: striker to how unsure its contact is.
     """
 
     force: Array
@@ -198,12 +190,7 @@ class LawError:
 def components(length: float, *, keep: float = 0.97) -> Array:
     """Leading components (k, NODES) of a smooth random function of ln(depth/R), of unit variance.
 
-    Parameters
-    ----------
-    length
-        Correlation length in ln(depth/R).
-    keep
-        Share of the variance kept.
+    `length`: correlation length in ln(depth/R); `keep`: share of the variance kept.
     """
     x = np.clip(_GRID, _FIRST, _LAST)
     inner = np.linspace(_FIRST, _LAST, 60)
@@ -226,14 +213,8 @@ def law_error(
 ) -> LawError:  # fmt: skip
     """Return the error of the law that the baseline rests on.
 
-    Parameters
-    ----------
-    scenes
-        Striker to the scenes of its impacts as stated.
-    dents
-        Whether the contact's radius is compared.
-    second
-        What is struck, where that is a sphere: what the flat in its place adds.
+    `scenes`: striker to the scenes of its impacts as stated; `dents`: whether the contact's radius
+    is compared; `second`: what is struck, where that is a sphere: what the flat in its place adds.
     """
     spreads = {name: _spread(found, second) for name, found in scenes.items()}
     smooth = components(RULES.law_length)

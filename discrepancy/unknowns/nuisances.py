@@ -27,20 +27,12 @@ RIM_SCALE = "dent.rim"
 class Nuisance:
     """A stated number that is not exactly known.
 
-    Parameters
-    ----------
-    name, unit
-        Key of set.toml, with its table.
-    value
-        As stated (or assumed where `stated` is false).
-    spread
-        Standard deviation: of the logarithm if `log`, else of the number.
-    log
-        Whether the logarithm is normal.
-    stated
-        Whether the set gives it.
-    note
-        What was assumed in its place, for the reader of a verdict.
+    - `name`, `unit`: key of set.toml, with its table.
+    - `value`: as stated (or assumed where `stated` is false).
+    - `spread`: standard deviation: of the logarithm if `log`, else of the number.
+    - `log`: whether the logarithm is normal.
+    - `stated`: whether the set gives it.
+    - `note`: what was assumed in its place, for the reader of a verdict.
     """
 
     name: str

@@ -62,15 +62,11 @@ _SLIPS = (
 class WrongNumber(Mechanism):
     """A number of the sheet that is off by a factor.
 
-    Parameters
-    ----------
-    key, unit
-        Of set.toml, as in the parameters of a verdict; the SI unit, "-" of what is a factor itself.
-    kind
-        Strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
-        kind share a prior.
-    title
-        As a clause.
+    - `key`, `unit`: of set.toml, as in the parameters of a verdict; the SI unit, "-" of what is a
+      factor itself.
+    - `kind`: strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
+      kind share a prior.
+    - `title`: as a clause.
     """
 
     static = True
@@ -155,14 +151,9 @@ def wrong_numbers(
 ) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
 
-    Parameters
-    ----------
-    known
-        Keys of numbers that readings hang on and that are not taken as unknown already.
-    strikers, observed
-        What strikes, and what was read.
-    fallen
-        Largest radius of what falls from a stated height [m]; 0 where none does.
+    - `known`: keys of numbers that readings hang on and that are not taken as unknown already.
+    - `strikers`, `observed`: what strikes, and what was read.
+    - `fallen`: largest radius of what falls from a stated height [m]; 0 where none does.
     """
     tables = {"target": ("the flat", _OF_TARGET)}
     tables |= {f"strikers.{s}": (f"striker {s}", _OF_STRIKER) for s in strikers}

@@ -136,14 +136,8 @@ def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
 class Stated:
     """How the file has the striker arrive, which a sweep changes in part.
 
-    Parameters
-    ----------
-    angle
-        Of a rod's axis or of a sphere's velocity [rad].
-    height
-        Of the fall [m]; NaN where the normal speed is stated.
-    gravity
-        The file's [m/s^2]; a scene of two free spheres has none.
+    `angle`: of a rod's axis or of a sphere's velocity [rad]; `height`: of the fall [m]; NaN where
+    the normal speed is stated; `gravity`: the file's [m/s^2]; a scene of two free spheres has none.
     """
 
     angle: float

@@ -23,12 +23,8 @@ def surroundings_of(
 ) -> Surroundings:  # fmt: skip
     """Return what a rig says around the impacts of one striker.
 
-    Parameters
-    ----------
-    temperature
-        Of the bodies [K]; nan where it is that of the surroundings.
-    from_height, height_share, rises
-        As in `Surroundings`.
+    `temperature`: of the bodies [K]; nan where it is that of the surroundings; `from_height`,
+    `height_share`, `rises`: as in `Surroundings`.
     """
     target, ball, air = rig.target, rig.strikers[striker], rig.environment
     weaker = rig.bodies[weaker_table(rig, striker)]

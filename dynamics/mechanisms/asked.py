@@ -22,12 +22,8 @@ SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.sim
 class Asked:
     """Mechanisms with their numbers; without any, an impact is the baseline's.
 
-    Parameters
-    ----------
-    mechanisms, constants
-        In the order of the library, and all their parameters.
-    around
-        What they may know of the rig besides the scene.
+    `mechanisms`, `constants`: in the order of the library, and all their parameters; `around`: what
+    they may know of the rig besides the scene.
     """
 
     mechanisms: tuple[Mechanism, ...] = ()

@@ -39,25 +39,16 @@ class Literature(NamedTuple):
 class Parameter:
     """One free number of a mechanism.
 
-    Parameters
-    ----------
-    name, unit
-        As they stand in the verdict.
-    low, high
-        Range within which the source (or physics) puts it; the prior is flat over it.
-    scale
-        Whether flat means in the number or in its logarithm; or `half-low`, where the low end is a
-        state that occurs: half of the prior is there, the rest flat in the angle whose squared sine
-        the share of the range is.
-    neutral
-        The value at which the mechanism does nothing.
-    source
-        Where the range comes from.
-    nodes
-        Points of the grid on which the mechanism is simulated.
-    literature
-        A published value for mild steel and common rigs, at which the mechanism can be tried
-        without fitting; none where there is no such value.
+    - `name`, `unit`: as they stand in the verdict.
+    - `low`, `high`: range within which the source (or physics) puts it; the prior is flat over it.
+    - `scale`: whether flat means in the number or in its logarithm; or `half-low`, where the low
+      end is a state that occurs: half of the prior is there, the rest flat in the angle whose
+      squared sine the share of the range is.
+    - `neutral`: the value at which the mechanism does nothing.
+    - `source`: where the range comes from.
+    - `nodes`: points of the grid on which the mechanism is simulated.
+    - `literature`: a published value for mild steel and common rigs, at which the mechanism can be
+      tried without fitting; none where there is no such value.
     """
 
     name: str
@@ -85,33 +76,20 @@ class Parameter:
 class Surroundings:
     """What a mechanism may know of the rig besides the scene of a condition.
 
-    Parameters
-    ----------
-    thickness
-        Of the flat [m]; nan when not stated.
-    support_mass, support_stiffness
-        As stated [kg, N/m]; nan when not.
-    roughness
-        Ra of the two surfaces together [m]; nan when not stated.
-    viscosity, density, pressure, fluid
-        Of what is between and around the bodies [Pa s, kg/m^3, Pa]; nan and "" when not stated.
-    heat_capacity, melting
-        Of the weaker body [J/(kg K), K]; nan when not stated.
-    temperature, ambient
-        Of the bodies in this condition, and the reference [K].
-    layer_thickness
-        Stated thickness of a surface layer [m]; nan when not.
-    moduli_stated
-        Whether the set gives Young's modulus of both bodies.
-    from_height
-        Whether the speed of this condition was computed from a height of fall.
-    height_share
-        Height of fall over the largest of the set.
-    rises
-        How the weaker body's stress rises with the rate of strain, where its flow curve was
-        measured at several.
-    struck
-        The second sphere; none where a flat is struck.
+    - `thickness`: of the flat [m]; nan when not stated.
+    - `support_mass`, `support_stiffness`: as stated [kg, N/m]; nan when not.
+    - `roughness`: Ra of the two surfaces together [m]; nan when not stated.
+    - `viscosity`, `density`, `pressure`, `fluid`: of what is between and around the bodies [Pa s,
+      kg/m^3, Pa]; nan and "" when not stated.
+    - `heat_capacity`, `melting`: of the weaker body [J/(kg K), K]; nan when not stated.
+    - `temperature`, `ambient`: of the bodies in this condition, and the reference [K].
+    - `layer_thickness`: stated thickness of a surface layer [m]; nan when not.
+    - `moduli_stated`: whether the set gives Young's modulus of both bodies.
+    - `from_height`: whether the speed of this condition was computed from a height of fall.
+    - `height_share`: height of fall over the largest of the set.
+    - `rises`: how the weaker body's stress rises with the rate of strain, where its flow curve was
+      measured at several.
+    - `struck`: the second sphere; none where a flat is struck.
     """
 
     thickness: float = math.nan

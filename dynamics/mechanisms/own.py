@@ -14,10 +14,7 @@ from .base import Mechanism
 def own_mechanisms(given: Sequence[Mechanism]) -> tuple[Mechanism, ...]:
     """Return those that were given and those of other packages, which may be classes.
 
-    Raises
-    ------
-    InputError
-        One is no mechanism, or bears a name of the library or of another.
+    Raises `InputError`: one is no mechanism, or bears a name of the library or of another.
     """
     found = [*given, *(added(GROUP, name) for name in names_added(GROUP))]
     own = tuple(m() if isinstance(m, type) else m for m in found)

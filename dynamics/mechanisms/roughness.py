@@ -22,12 +22,10 @@ from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Val
 class Layer:
     """A rough layer in series with the bulk, over the depth nodes of a law's table.
 
-    Parameters
-    ----------
-    force, recovery
-        (NODES,) factors on the smooth contact's loading force and elastic recovery.
-    dent
-        (NODES,) depth that stays over the peak depth less the recovery, which is the energy's.
+    - `force`, `recovery`: (NODES,) factors on the smooth contact's loading force and elastic
+      recovery.
+    - `dent`: (NODES,) depth that stays over the peak depth less the recovery, which is the
+      energy's.
     """
 
     force: Array
@@ -41,16 +39,8 @@ class Layer:
         Asperities with exponential heights carry F = F_0 (exp(closure/sigma) - 1), and open again
         on the same curve until the part `kept` of the closure is left.
 
-        Parameters
-        ----------
-        table
-            Of the smooth contact.
-        sigma
-            Mean height of the asperities [m].
-        start
-            F_0 over the force at which the bulk has moved by sigma.
-        kept
-            Part of the closure that stays.
+        `table`: of the smooth contact; `sigma`: mean height of the asperities [m]; `start`: F_0
+        over the force at which the bulk has moved by sigma; `kept`: part of the closure that stays.
         """
         depth, force = table.depth, np.exp(table.stated.force)
         recovered = np.exp(table.stated.recovery)

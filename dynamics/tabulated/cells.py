@@ -44,19 +44,12 @@ _AT_ONCE = 256
 class TableCells:
     """Columns over cells.
 
-    Parameters
-    ----------
-    vector
-        The table, shape (n,).
-    error
-        Largest deviation from the function that was seen between the nodes, for each column; cells
-        narrower than `least`, which hold a jump, are left out.
-    count
-        Number of cells; 0 where there is no table, and then no vector either.
-    high
-        Where the table ends.
-    outcome
-        Whether that is the end that was asked for.
+    - `vector`: the table, shape (n,).
+    - `error`: largest deviation from the function that was seen between the nodes, for each column;
+      cells narrower than `least`, which hold a jump, are left out.
+    - `count`: number of cells; 0 where there is no table, and then no vector either.
+    - `high`: where the table ends.
+    - `outcome`: whether that is the end that was asked for.
     """
 
     vector: Array
@@ -72,20 +65,13 @@ def cells_of(
 ) -> TableCells:  # fmt: skip
     """Return the table of a function: cells are halved until the tolerance holds in each.
 
-    Parameters
-    ----------
-    function
-        From places, shape (n,), to columns, shape (n, columns); all of order 1.
-    low, high
-        Range.
-    tolerance
-        Largest error of any column (of those in `relative` over its own value) between the nodes.
-    least
-        Cells are not halved below this width: what remains there is a jump.
-    start
-        Cells to begin with, all of one width.
-    bins
-        Bins of the guide; as many as suit the number of cells when left out.
+    - `function`: from places, shape (n,), to columns, shape (n, columns); all of order 1.
+    - `low`, `high`: range.
+    - `tolerance`: largest error of any column (of those in `relative` over its own value) between
+      the nodes.
+    - `least`: cells are not halved below this width: what remains there is a jump.
+    - `start`: cells to begin with, all of one width.
+    - `bins`: bins of the guide; as many as suit the number of cells when left out.
 
     Examples
     --------

@@ -75,11 +75,8 @@ class _Sizes(NamedTuple):
 class Band:
     """Standard deviations of an impact's numbers, by part and field of `Impact`.
 
-    Parameters
-    ----------
-    parts
-        Change of each field by one standard deviation of the part: keys of the file, `LAW`, then
-        `METALS`.
+    `parts`: change of each field by one standard deviation of the part: keys of the file, `LAW`,
+    then `METALS`.
     """
 
     parts: Mapping[str, Mapping[str, float]]

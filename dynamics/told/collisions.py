@@ -39,16 +39,8 @@ class ExportedBlow(NamedTuple):
 class Damped(NamedTuple):
     """A damped contact law.
 
-    Parameters
-    ----------
-    name
-        Of the law in tables.
-    power
-        Exponent of its elastic force.
-    force
-        From depth, rate and damping, all without dimension.
-    most
-        Largest damping that is looked at.
+    `name`: of the law in tables; `power`: exponent of its elastic force; `force`: from depth, rate
+    and damping, all without dimension; `most`: largest damping that is looked at.
     """
 
     name: str

@@ -19,20 +19,12 @@ from .beside import error_of
 class LeftSurface(NamedTuple):
     """What stays in one body.
 
-    Parameters
-    ----------
-    body
-        The tip, `sphere`, or what is struck, `flat`; also where that is a second sphere.
-    place
-        (n,) along the motion from the deepest place [m].
-    height, std
-        (n,) over the surface that was [m], below 0 where it is pressed in.
-    radius
-        Of the contact at its deepest [m].
-    depth
-        What stays at the deepest place [m].
-    shaped
-        Whether the shape between is known: else the surface is given at its deepest alone.
+    - `body`: the tip, `sphere`, or what is struck, `flat`; also where that is a second sphere.
+    - `place`: (n,) along the motion from the deepest place [m].
+    - `height`, `std`: (n,) over the surface that was [m], below 0 where it is pressed in.
+    - `radius`: of the contact at its deepest [m].
+    - `depth`: what stays at the deepest place [m].
+    - `shaped`: whether the shape between is known: else the surface is given at its deepest alone.
     """
 
     body: Body

@@ -24,14 +24,7 @@ _PRESSURE_POINTS = 60
 class FirstYield:
     """Where a body first yields: Hertz up to the critical depth (Eqs. 1.16, 1.19).
 
-    Parameters
-    ----------
-    depth
-        Approach [m].
-    load
-        Force [N].
-    work
-        Work to there [J].
+    `depth`: approach [m]; `load`: force [N]; `work`: work to there [J].
     """
 
     depth: float

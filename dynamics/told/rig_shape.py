@@ -16,14 +16,8 @@ if TYPE_CHECKING:
 class RigShape(NamedTuple):
     """Outlines in the plane of the motion, the touch at the origin, the normal along y [m].
 
-    Parameters
-    ----------
-    striker, struck
-        (n, 2) corners.
-    window
-        Half the width that shows the rig.
-    thickness
-        Of the flat; infinite where the file states none, or a sphere is struck.
+    `striker`, `struck`: (n, 2) corners; `window`: half the width that shows the rig; `thickness`:
+    of the flat; infinite where the file states none, or a sphere is struck.
     """
 
     striker: Array

@@ -23,10 +23,7 @@ from numba.extending import (
 class Bundle(types.Type):  # type: ignore[misc]
     """Type of the place of a named tuple; fields are read as the tuple's own, never written.
 
-    Parameters
-    ----------
-    held
-        numba's type of the named tuple.
+    `held`: numba's type of the named tuple.
     """
 
     def __init__(self, held: Any) -> None:

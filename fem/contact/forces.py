@@ -22,22 +22,13 @@ _SUPPORT = 96  # room for the degrees of freedom that a node's weighted gap depe
 class ContactState:
     """What one evaluation of the contact gives.
 
-    Parameters
-    ----------
-    pressure
-        Nodal pressures p_A on the reference area, shape (n_slave,) [E'].
-    gap, r
-        Gap and current radius of the slave points, shape (n_edges, 3) [R].
-    segment
-        Master segment under each slave point, shape (n_edges, 3).
-    force
-        Vertical contact force [E' R^2].
-    energy
-        Penalty energy [E' R^3].
-    traction
-        Nodal tangential tractions on the reference area, shape (n_slave,) [E'].
-    rubbed
-        Work lost in sliding since the last accepted step [E' R^3].
+    - `pressure`: nodal pressures p_A on the reference area, shape (n_slave,) [E'].
+    - `gap`, `r`: gap and current radius of the slave points, shape (n_edges, 3) [R].
+    - `segment`: master segment under each slave point, shape (n_edges, 3).
+    - `force`: vertical contact force [E' R^2].
+    - `energy`: penalty energy [E' R^3].
+    - `traction`: nodal tangential tractions on the reference area, shape (n_slave,) [E'].
+    - `rubbed`: work lost in sliding since the last accepted step [E' R^3].
     """
 
     pressure: Array
@@ -234,11 +225,8 @@ def contact_forces(
 
     With a `grip`, those of friction too.
 
-    Returns
-    -------
-    tuple
-        The contact's state, none when a slave point has left the master surface, and the number of
-        triplets written into `tangent`.
+    Returned: the contact's state, none when a slave point has left the master surface, and the
+    number of triplets written into `tangent`.
     """
     points = SlavePoints.room(len(surfaces.slave) - 1)
     pressure = np.empty(len(surfaces.slave))

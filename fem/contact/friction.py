@@ -25,16 +25,10 @@ _SUPPORT = 96  # room for the degrees of freedom that the slip of a node depends
 class Grip(NamedTuple):
     """How the slave nodes held when the last step ended; a frictionless one has no nodes.
 
-    Parameters
-    ----------
-    dof, weight
-        Slip of a node by the moves of its degrees of freedom, shape (n_slave, 96).
-    n_dofs
-        How many of them, shape (n_slave,).
-    x
-        Coordinates of all nodes then, shape (n_nodes, 2) [R].
-    traction
-        Tangential traction on the reference area, shape (n_slave,) [E'].
+    - `dof`, `weight`: slip of a node by the moves of its degrees of freedom, shape (n_slave, 96).
+    - `n_dofs`: how many of them, shape (n_slave,).
+    - `x`: coordinates of all nodes then, shape (n_nodes, 2) [R].
+    - `traction`: tangential traction on the reference area, shape (n_slave,) [E'].
     """
 
     dof: Integers

@@ -26,12 +26,8 @@ class Weights(NamedTuple):
 class SlavePoints(NamedTuple):
     """Where the slave points are, each array of shape (n_edges, 3).
 
-    Parameters
-    ----------
-    segment, position
-        Master segment under the point, and the place on it from 0 to 1.
-    gap, radius
-        Gap and current radius [R].
+    `segment`, `position`: master segment under the point, and the place on it from 0 to 1; `gap`,
+    `radius`: gap and current radius [R].
     """
 
     segment: Integers

@@ -21,14 +21,8 @@ LOCAL = 16
 class Changes(NamedTuple):
     """What one slave point's force depends on.
 
-    Parameters
-    ----------
-    dof
-        Its degrees of freedom, shape (16,).
-    dg
-        Gradient of the gap, shape (16,).
-    b
-        Share of the point's force that each takes, shape (16,).
+    `dof`: its degrees of freedom, shape (16,); `dg`: gradient of the gap, shape (16,); `b`: share
+    of the point's force that each takes, shape (16,).
     """
 
     dof: Integers

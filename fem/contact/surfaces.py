@@ -19,23 +19,15 @@ WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 class Surfaces(NamedTuple):
     """The two surfaces that may touch (constants of a solve).
 
-    Parameters
-    ----------
-    slave, master
-        Node numbers ordered from the axis outwards.
-    weight
-        Reference area of the slave points, shape (n_edges, 3).
-    mass
-        int N_A dA, shape (n_slave,).
-    stiffness
-        Penalty stiffness eps_A, shape (n_slave,) [E'/R].
-    sign
-        1 if the sphere is the slave side, -1 if the flat is.
-    slave_shape, master_shape
-        How the slopes at the ends of a segment, in units of its length, follow from the differences
-        between its four nodes, shape (n_slave - 1, 4) and (n_master - 1, 4).
-    friction
-        Coulomb's coefficient.
+    - `slave`, `master`: node numbers ordered from the axis outwards.
+    - `weight`: reference area of the slave points, shape (n_edges, 3).
+    - `mass`: int N_A dA, shape (n_slave,).
+    - `stiffness`: penalty stiffness eps_A, shape (n_slave,) [E'/R].
+    - `sign`: 1 if the sphere is the slave side, -1 if the flat is.
+    - `slave_shape`, `master_shape`: how the slopes at the ends of a segment, in units of its
+      length, follow from the differences between its four nodes, shape (n_slave - 1, 4) and
+      (n_master - 1, 4).
+    - `friction`: Coulomb's coefficient.
     """
 
     slave: Integers
@@ -71,18 +63,11 @@ class Surfaces(NamedTuple):
     ) -> Surfaces:
         """Set up the two surfaces.
 
-        Parameters
-        ----------
-        points
-            Node coordinates, shape (n_nodes, 2) [R].
-        sphere, flat
-            Their surface nodes from the axis outwards.
-        penalty
-            Contact stiffness in E' over the edge length.
-        flat_is_slave
-            Which side is which.
-        friction
-            Coulomb's coefficient.
+        - `points`: node coordinates, shape (n_nodes, 2) [R].
+        - `sphere`, `flat`: their surface nodes from the axis outwards.
+        - `penalty`: contact stiffness in E' over the edge length.
+        - `flat_is_slave`: which side is which.
+        - `friction`: Coulomb's coefficient.
         """
         slave, master = (flat, sphere) if flat_is_slave else (sphere, flat)
         if flat_is_slave:  # as far as the sphere's surface lies above it

@@ -31,18 +31,11 @@ _MOST = 80
 class FlowLaws(NamedTuple):
     """The flow laws of a solve, one row each (R = 1, E' = 1).
 
-    Parameters
-    ----------
-    curve
-        Plastic strain, radius and its slope by row of the table, shape (n_laws, 3, n_rows).
-    rate
-        `NO_RATE`, `COWPER_SYMONDS`, `JOHNSON_COOK` or `OVERSTRESS`, shape (n_laws,).
-    reference, number, overstress
-        Of the rate law [1/s], [-], [radius], shape (n_laws,).
-    rise
-        Rise of temperature by a plastic work, over that at which no strength is left [1/E'].
-    exponent
-        Of the softening [-].
+    - `curve`: plastic strain, radius and its slope by row of the table, shape (n_laws, 3, n_rows).
+    - `rate`: `NO_RATE`, `COWPER_SYMONDS`, `JOHNSON_COOK` or `OVERSTRESS`, shape (n_laws,).
+    - `reference`, `number`, `overstress`: of the rate law [1/s], [-], [radius], shape (n_laws,).
+    - `rise`: rise of temperature by a plastic work, over that at which no strength is left [1/E'].
+    - `exponent`: of the softening [-].
     """
 
     curve: Array
@@ -57,18 +50,11 @@ class FlowLaws(NamedTuple):
 class Law(NamedTuple):
     """One point's law in one step: numbers of `FlowLaws`, and where the step starts.
 
-    Parameters
-    ----------
-    rate, reference, number, overstress, rise, exponent
-        As in `FlowLaws`.
-    strain, work
-        Plastic strain and plastic work so far [-, E'].
-    static
-        Radius of the table at that strain.
-    stiffness
-        2 G, which turns a radius times lambda into work [E'].
-    seconds
-        Duration of the step; `inf`: no clock.
+    - `rate`, `reference`, `number`, `overstress`, `rise`, `exponent`: as in `FlowLaws`.
+    - `strain`, `work`: plastic strain and plastic work so far [-, E'].
+    - `static`: radius of the table at that strain.
+    - `stiffness`: 2 G, which turns a radius times lambda into work [E'].
+    - `seconds`: duration of the step; `inf`: no clock.
     """
 
     rate: int
@@ -87,12 +73,8 @@ class Law(NamedTuple):
 class Radius(NamedTuple):
     """Radius of the yield circle after some flow.
 
-    Parameters
-    ----------
-    end, gain
-        The radius and its derivative by lambda.
-    start
-        The radius of the same rate at the step's start.
+    `end`, `gain`: the radius and its derivative by lambda; `start`: the radius of the same rate at
+    the step's start.
     """
 
     end: float
@@ -103,20 +85,12 @@ class Radius(NamedTuple):
 class Circle(NamedTuple):
     """The yield circle through a step, with the present J.
 
-    Parameters
-    ----------
-    mean, end
-        Radius on which the point slides, and in the end.
-    gain
-        Derivative of the end by what drives the flow, both as the circle grows.
-    drift
-        Derivative of the way along the increment by the mean radius.
-    flow
-        lambda.
-    worked
-        Mean radius while it flows, for the plastic work.
-    decay
-        exp(-length/mean) of the slide on it.
+    - `mean`, `end`: radius on which the point slides, and in the end.
+    - `gain`: derivative of the end by what drives the flow, both as the circle grows.
+    - `drift`: derivative of the way along the increment by the mean radius.
+    - `flow`: lambda.
+    - `worked`: mean radius while it flows, for the plastic work.
+    - `decay`: exp(-length/mean) of the slide on it.
     """
 
     mean: float

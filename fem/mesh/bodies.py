@@ -30,20 +30,14 @@ _ON_AXIS = 1e-13
 class Mesh:
     """Quadrilaterals of the two bodies in one numbering; the sphere's nodes come first.
 
-    Parameters
-    ----------
-    points
-        Coordinates (r, z), shape (n_nodes, 2) [R]. The flat is z <= 0, the pole is the origin.
-    quads
-        Node numbers, counter-clockwise, shape (n_elements, 4).
-    n_sphere_points, n_sphere_quads
-        How many nodes and elements belong to the sphere.
-    sphere_surface, flat_surface
-        Surface nodes of the bodies, from the axis outwards.
-    top, far
-        Nodes of the hemisphere's flat top face and of the half-space's far boundary.
-    rings, far_rings
-        Radii of the rings of both bodies, and of the half-space beyond them [R].
+    - `points`: coordinates (r, z), shape (n_nodes, 2) [R]. The flat is z <= 0, the pole is the
+      origin.
+    - `quads`: node numbers, counter-clockwise, shape (n_elements, 4).
+    - `n_sphere_points`, `n_sphere_quads`: how many nodes and elements belong to the sphere.
+    - `sphere_surface`, `flat_surface`: surface nodes of the bodies, from the axis outwards.
+    - `top`, `far`: nodes of the hemisphere's flat top face and of the half-space's far boundary.
+    - `rings`, `far_rings`: radii of the rings of both bodies, and of the half-space beyond them
+      [R].
     """
 
     points: Array
@@ -68,17 +62,11 @@ class Mesh:
 def contact_mesh(*, rings: Array, far_rings: Array, divisions: int, crowding: float = 1.0) -> Mesh:
     """Mesh both bodies.
 
-    Parameters
-    ----------
-    rings
-        Ring radii of both bodies (chord distance from the first contact point) [R]; up to the last
-        one the two surfaces can touch.
-    far_rings
-        Further rings of the half-space.
-    divisions
-        Elements over the quarter arc, even.
-    crowding
-        Angle of the elements at the axis over that at the surface.
+    - `rings`: ring radii of both bodies (chord distance from the first contact point) [R]; up to
+      the last one the two surfaces can touch.
+    - `far_rings`: further rings of the half-space.
+    - `divisions`: elements over the quarter arc, even.
+    - `crowding`: angle of the elements at the axis over that at the surface.
     """
     layers = _Layers(divisions, crowding ** (1.0 / (divisions - 1)))
     p_s, q_s = _body(rings, layers, sphere=True)

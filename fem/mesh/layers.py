@@ -18,19 +18,13 @@ from .bodies import Mesh
 class Layers:
     """Nodes and elements of one body, layer by layer.
 
-    Parameters
-    ----------
-    nodes
-        Node numbers, from the innermost block outwards and from the surface to the axis, shape
-        (n_layers + 1, divisions + 1).
-    quads
-        Element numbers, shape (n_layers, divisions).
-    corners
-        Which of its four nodes an element has at (inner, surface side), (inner, axis side),
-        (outer, surface side) and (outer, axis side), shape (n_layers, divisions, 4).
-    level
-        Coordinate along the layers: a ring's radius, then counted on by the layer; shape
-        (n_layers + 1,).
+    - `nodes`: node numbers, from the innermost block outwards and from the surface to the axis,
+      shape (n_layers + 1, divisions + 1).
+    - `quads`: element numbers, shape (n_layers, divisions).
+    - `corners`: which of its four nodes an element has at (inner, surface side), (inner, axis
+      side), (outer, surface side) and (outer, axis side), shape (n_layers, divisions, 4).
+    - `level`: coordinate along the layers: a ring's radius, then counted on by the layer; shape
+      (n_layers + 1,).
     """
 
     nodes: Integers

@@ -37,16 +37,11 @@ _ABOUT = (
 class Language:
     """How a language writes an assignment; by default as Python does.
 
-    Parameters
-    ----------
-    line
-        Format of an assignment, with the fields `target` and `value`.
-    number, name
-        Text of a number and of a name.
-    functions
-        Names of functions that differ from Python's; one for `pow` replaces the operator.
-    operators
-        Operators that differ, each with its blanks.
+    - `line`: format of an assignment, with the fields `target` and `value`.
+    - `number`, `name`: text of a number and of a name.
+    - `functions`: names of functions that differ from Python's; one for `pow` replaces the
+      operator.
+    - `operators`: operators that differ, each with its blanks.
     """
 
     line: str = "{target} = {value}"

@@ -186,17 +186,10 @@ BRAKE_2012 = PublishedLaw(
 def brake_2015(*, meyer: float = 2.0, hardness: float | None = None) -> PublishedLaw:
     """Return the law of 2015 with a hardness and a Meyer exponent of one's own.
 
-    Parameters
-    ----------
-    meyer
-        Exponent n of F ~ a^n in full plasticity, 2 without hardening, at most 3.
-    hardness
-        p_0 [Pa]; by default from 2.8 S of both bodies by 4.30 (corrected).
+    `meyer`: exponent n of F ~ a^n in full plasticity, 2 without hardening, at most 3; `hardness`:
+    p_0 [Pa]; by default from 2.8 S of both bodies by 4.30 (corrected).
 
-    Raises
-    ------
-    InputError
-        A number outside its range.
+    Raises `InputError`: a number outside its range.
     """
     if not 2.0 <= meyer < 3.0:
         raise InputError(f"{meyer:g}", key="meyer", allowed="2 <= n < 3")

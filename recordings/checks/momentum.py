@@ -42,18 +42,13 @@ Residuals = Callable[[Array, Indices], Array]
 class MomentumTrials:
     """The trials of one striker, `n` of them.
 
-    Parameters
-    ----------
-    angle, speed
-        (n, 2) angle of the axis [rad] and normal approach [m/s]: values and the standard deviations
-        within which they may move.
-    tangential, spin
-        (n,) speed of the centre along the flat [m/s] and angular velocity [rad/s], before.
-    measured
-        (n, 2) values and standard deviations by observable, of `FIXED_BY_MOMENTUM`; NaN where there
-        is none.
-    second
-        What is struck, where that is a sphere.
+    - `angle`, `speed`: (n, 2) angle of the axis [rad] and normal approach [m/s]: values and the
+      standard deviations within which they may move.
+    - `tangential`, `spin`: (n,) speed of the centre along the flat [m/s] and angular velocity
+      [rad/s], before.
+    - `measured`: (n, 2) values and standard deviations by observable, of `FIXED_BY_MOMENTUM`; NaN
+      where there is none.
+    - `second`: what is struck, where that is a sphere.
     """
 
     striker: StrikerTable

@@ -38,18 +38,12 @@ FIXED_BY_MOMENTUM = tuple(
 class RigidTouch(Generic[Number]):
     """Striker and motion just before touch, of one trial or, in arrays, of many.
 
-    Parameters
-    ----------
-    m, I
-        Mass [kg] and moment of inertia about the centre, across the axis [kg m^2].
-    c, s
-        Arms of the contact point [m].
-    vx, vy, spin
-        Velocity of the centre of mass [m/s] (vy < 0) and angular velocity [rad/s].
-    lightness
-        1/m of a second sphere that is free [1/kg]; 0 of what is held.
-    struck_vx, struck_vy
-        Velocity of the struck body's surface at the contact [m/s].
+    - `m`, `I`: mass [kg] and moment of inertia about the centre, across the axis [kg m^2].
+    - `c`, `s`: arms of the contact point [m].
+    - `vx`, `vy`, `spin`: velocity of the centre of mass [m/s] (vy < 0) and angular velocity
+      [rad/s].
+    - `lightness`: 1/m of a second sphere that is free [1/kg]; 0 of what is held.
+    - `struck_vx`, `struck_vy`: velocity of the struck body's surface at the contact [m/s].
     """
 
     m: float

@@ -81,12 +81,8 @@ class FlowMechanism(Mechanism):
 def strain(scene: Scene, table: StrengthTable, strength: Array | None = None) -> Array:
     """Representative plastic strain at the depths of a table, 0.2 (a - a_c)/R with a at most R.
 
-    Parameters
-    ----------
-    scene, table
-        The impact and the table of its contact.
-    strength
-        Relative strengths at the depths, which move the radius; none: as stated.
+    `scene`, `table`: the impact and the table of its contact; `strength`: relative strengths at the
+    depths, which move the radius; none: as stated.
     """
     pair, radius = scene.pair, table.radius
     if strength is not None:
