@@ -16,19 +16,13 @@ from .rules import RULES
 class Quality:
     """Balances, smoothness and reach of one loading curve; nan where there are too few depths.
 
-    Parameters
-    ----------
-    energy_defect
-        Largest |work - stored - dissipated|/work.
-    force_step, radius_step, share_step
-        Largest step of F, a and delta_s*, over the local value: the difference, between two
-        neighbouring depths, of the departures from a smooth curve (a local cubic in log Delta over
-        seven depths), scaled so that a single step reads its height; an alternating ripple reads up
-        to 1.7 times its own.
-    depth_reached
-        Largest Delta/R.
-    radius_reached
-        Largest a/R.
+    - `energy_defect`: largest |work - stored - dissipated|/work.
+    - `force_step`, `radius_step`, `share_step`: largest step of F, a and delta_s*, over the local
+      value: the difference, between two neighbouring depths, of the departures from a smooth curve
+      (a local cubic in log Delta over seven depths), scaled so that a single step reads its height;
+      an alternating ripple reads up to 1.7 times its own.
+    - `depth_reached`: largest Delta/R.
+    - `radius_reached`: largest a/R.
     """
 
     energy_defect: float

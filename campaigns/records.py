@@ -33,30 +33,17 @@ class UnloadingRecord:
 class CaseRecord:
     """One stored case.
 
-    Parameters
-    ----------
-    id
-        Case id.
-    case
-        Its specification.
-    status
-        `done` or `failed`.
-    message
-        Why it failed; empty when done.
-    curve
-        Loading results by name, shape (n,), SI (see `campaigns.schema.CURVE`).
-    unloadings
-        In the order of their depth.
-    profiles
-        Contact pressure and surfaces by name (see `campaigns.schema.PROFILES`).
-    counters
-        Work that the solve took.
-    accuracy
-        Settings that it was solved with: finer than the specification's after a retry.
-    environment
-        Versions and commit that computed it.
-    mesh
-        Digest of its mesh.
+    - `id`: case id.
+    - `case`: its specification.
+    - `status`: `done` or `failed`.
+    - `message`: why it failed; empty when done.
+    - `curve`: loading results by name, shape (n,), SI (see `campaigns.schema.CURVE`).
+    - `unloadings`: in the order of their depth.
+    - `profiles`: contact pressure and surfaces by name (see `campaigns.schema.PROFILES`).
+    - `counters`: work that the solve took.
+    - `accuracy`: settings that it was solved with: finer than the specification's after a retry.
+    - `environment`: versions and commit that computed it.
+    - `mesh`: digest of its mesh.
     """
 
     id: str

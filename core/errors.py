@@ -52,16 +52,10 @@ def _printable(character: str) -> str:
 class InputError(ValueError):
     """A mistake in the user's input: file, key, value and what is allowed, in one line.
 
-    Parameters
-    ----------
-    message
-        What is wrong, including the value found.
-    source
-        The file (or `"command line"`) the value came from.
-    key
-        The key, column or option within `source`.
-    allowed
-        What would have been accepted.
+    - `message`: what is wrong, including the value found.
+    - `source`: the file (or `"command line"`) the value came from.
+    - `key`: the key, column or option within `source`.
+    - `allowed`: what would have been accepted.
 
     Examples
     --------
@@ -130,14 +124,8 @@ class Ending(Enum):
 class Outcome:
     """How a computation ended, how far it got, and what to try.
 
-    Parameters
-    ----------
-    ending
-        The kind of end.
-    message
-        One sentence: what happened and how far it got.
-    advice
-        One sentence: what to try next; empty when completed.
+    `ending`: the kind of end; `message`: one sentence: what happened and how far it got; `advice`:
+    one sentence: what to try next; empty when completed.
     """
 
     ending: Ending

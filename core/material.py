@@ -23,28 +23,16 @@ if TYPE_CHECKING:  # numpy comes with it, and the command line starts without
 class Material:
     """An isotropic, elastic-perfectly-plastic body (or an elastic, a rigid, a hardening one).
 
-    Parameters
-    ----------
-    E
-        Young's modulus [Pa].
-    nu
-        Poisson's ratio [-], 0 <= nu < 0.5.
-    Sy
-        Uniaxial yield strength, a true (Cauchy) stress [Pa]; `inf` for a purely elastic body.
-    rigid
-        A body that does not deform at all; `E` and `Sy` are then ignored.
-    density
-        Mass density [kg/m^3]; only dynamics needs it.
-    name
-        Text for tables and pictures.
-    flow
-        How the strength changes with plastic strain, rate and heat; only the finite elements know
-        of it, and its curve begins at `Sy`.
+    - `E`: Young's modulus [Pa].
+    - `nu`: Poisson's ratio [-], 0 <= nu < 0.5.
+    - `Sy`: uniaxial yield strength, a true (Cauchy) stress [Pa]; `inf` for a purely elastic body.
+    - `rigid`: a body that does not deform at all; `E` and `Sy` are then ignored.
+    - `density`: mass density [kg/m^3]; only dynamics needs it.
+    - `name`: text for tables and pictures.
+    - `flow`: how the strength changes with plastic strain, rate and heat; only the finite elements
+      know of it, and its curve begins at `Sy`.
 
-    Raises
-    ------
-    InputError
-        A number outside its range; the key is the field's name in input files.
+    Raises `InputError`: a number outside its range; the key is the field's name in input files.
     """
 
     E: float
@@ -107,15 +95,8 @@ class Material:
 class Pair:
     """A sphere (or the round end of a rod) and the flat that it touches.
 
-    Parameters
-    ----------
-    sphere, flat
-        The two bodies.
-    R
-        Radius of the undeformed sphere [m].
+    `sphere`, `flat`: the two bodies; `R`: radius of the undeformed sphere [m].
 
-    Notes
-    -----
     Field symbols: E' is the reduced modulus (1.7), Sy* the ratio of the sphere's strength to the
     flat's (2.1), `Sy_min` the strength of the weaker body.
     """

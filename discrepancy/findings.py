@@ -75,36 +75,21 @@ class WrongInput(NamedTuple):
 class Verdict:
     """What a diagnosis says; the fields are those of verdict.json, and what the report draws.
 
-    Parameters
-    ----------
-    choice
-        The verdict, the explanations that it holds, and why.
-    audit
-        Contradictions and cautions of the inputs.
-    probabilities, scores
-        By explanation.
-    inclusion
-        Mechanism to the probability that it takes part, alone or with others.
-    parameters, nuisance_pulls, surprise
-        By the number's name, of the best explanation.
-    excluded, limits
-        By mechanism: why it was not fitted; the smallest value that would have been seen.
-    misfit
-        How much of the baseline's misfit the data sheet, the law and the metal took.
-    stated
-        (m,) predictions of the cells with every input as stated.
-    proposals, session
-        What could be done next, one by one, and in one session together.
-    history
-        Probabilities after each session, where the set has had several.
-    ranking
-        All fits, and the problem that they were fitted to.
-    best
-        Fit of the best explanation; the baseline's when none is named.
-    impacts
-        Impacts that were simulated.
-    titles
-        What each mechanism that was tried means, as a clause; one's own too.
+    - `choice`: the verdict, the explanations that it holds, and why.
+    - `audit`: contradictions and cautions of the inputs.
+    - `probabilities`, `scores`: by explanation.
+    - `inclusion`: mechanism to the probability that it takes part, alone or with others.
+    - `parameters`, `nuisance_pulls`, `surprise`: by the number's name, of the best explanation.
+    - `excluded`, `limits`: by mechanism: why it was not fitted; the smallest value that would have
+      been seen.
+    - `misfit`: how much of the baseline's misfit the data sheet, the law and the metal took.
+    - `stated`: (m,) predictions of the cells with every input as stated.
+    - `proposals`, `session`: what could be done next, one by one, and in one session together.
+    - `history`: probabilities after each session, where the set has had several.
+    - `ranking`: all fits, and the problem that they were fitted to.
+    - `best`: fit of the best explanation; the baseline's when none is named.
+    - `impacts`: impacts that were simulated.
+    - `titles`: what each mechanism that was tried means, as a clause; one's own too.
     """
 
     name: str
@@ -180,17 +165,9 @@ class Verdict:
     def samples(self, draws: int = 1000, *, explanation: str = "") -> Samples:
         """Return equally probable draws: parameters, stated numbers and what is read again.
 
-        Parameters
-        ----------
-        draws
-            How many.
-        explanation
-            A key of `scores`, as "baseline"; left out: the best explanation.
+        `explanation`: a key of `scores`, as "baseline"; left out: the best explanation.
 
-        Raises
-        ------
-        InputError
-            An explanation that was not fitted.
+        Raises `InputError`: an explanation that was not fitted.
         """
         fits = {f.name: f for f in self.ranking.fits}
         name = explanation or self.best.name

@@ -94,21 +94,13 @@ def diagnose(
 ) -> Verdict:
     """Say what physics is missing in the simulation of a recording set.
 
-    Parameters
-    ----------
-    recordings
-        From `recordings.read`.
-    seed, confirm, law, cautious, assume, mechanisms
-        As `dentscope.diagnose` takes and explains them.
-    history
-        Whether what was known before each later session of the set is worked out too.
-    progress
-        Called with a line before each step.
+    - `recordings`: from `recordings.read`.
+    - `seed`, `confirm`, `law`, `cautious`, `assume`, `mechanisms`: as `dentscope.diagnose` takes
+      and explains them.
+    - `history`: whether what was known before each later session of the set is worked out too.
 
-    Raises
-    ------
-    InputError
-        The set holds nothing that can be compared, or a mechanism bears a name of the library.
+    Raises `InputError`: the set holds nothing that can be compared, or a mechanism bears a name of
+    the library.
     """
     if law not in (None, *get_args(LawChoice)):
         raise InputError(repr(law), key="law", allowed=", ".join(get_args(LawChoice)))

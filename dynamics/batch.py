@@ -65,38 +65,21 @@ def impacts(
 ) -> Impacts:  # fmt: skip
     """Simulate impacts of a scene over arrays of conditions, which are broadcast.
 
-    Parameters
-    ----------
-    scene
-        Gives whatever is left out, the law and all seams.
-    speeds
-        Normal approach speed of the contact point [m/s].
-    angles
-        Rod: between axis and flat. Sphere: between velocity and flat, which gives the tangential
-        speed unless `tangential` does [rad].
-    friction
-        Coefficient, at rest as in motion [-].
-    masses
-        Of the striker [kg]; its inertia follows.
-    tangential, spins
-        Of the approach [m/s, rad/s].
-    settings
-        Of the time steps.
-    asked
-        Mechanisms that act beside the law.
-    change
-        What is done to the force of each impact, with the mechanisms' part in it.
+    - `scene`: gives whatever is left out, the law and all seams.
+    - `speeds`: normal approach speed of the contact point [m/s].
+    - `angles`: rod: between axis and flat. Sphere: between velocity and flat, which gives the
+      tangential speed unless `tangential` does [rad].
+    - `friction`: coefficient, at rest as in motion [-].
+    - `masses`: of the striker [kg]; its inertia follows.
+    - `tangential`, `spins`: of the approach [m/s, rad/s].
+    - `settings`: of the time steps.
+    - `asked`: mechanisms that act beside the law.
+    - `change`: what is done to the force of each impact, with the mechanisms' part in it.
 
-    Returns
-    -------
-    Impacts
-        In the order of the broadcast arrays, flattened; of one that did not end the column
-        `outcome` says why, and what it would show is nan.
+    Returned: in the order of the broadcast arrays, flattened; of one that did not end the column
+    `outcome` says why, and what it would show is nan.
 
-    Raises
-    ------
-    InputError
-        Shapes that cannot be broadcast, or a number outside its range.
+    Raises `InputError`: shapes that cannot be broadcast, or a number outside its range.
 
     Examples
     --------

@@ -27,15 +27,10 @@ _SLENDER = 3000.0
 class Modes:
     """Vibration modes of the striker; none by default (a rigid body).
 
-    Parameters
-    ----------
-    frequencies
-        (n,) angular frequencies [rad/s].
-    axial, transverse, rotation
-        (n,) of the struck end, mass-normalised: displacement along the axis (towards the far
-        end), displacement across it [kg^-1/2], and slope [kg^-1/2 m^-1].
-    loss_factor
-        Twice the damping ratio, the same for each mode [-].
+    - `frequencies`: (n,) angular frequencies [rad/s].
+    - `axial`, `transverse`, `rotation`: (n,) of the struck end, mass-normalised: displacement along
+      the axis (towards the far end), displacement across it [kg^-1/2], and slope [kg^-1/2 m^-1].
+    - `loss_factor`: twice the damping ratio, the same for each mode [-].
     """
 
     frequencies: tuple[float, ...] = ()

@@ -28,11 +28,8 @@ _ROWS_SHOWN = 12
 class Impacts:
     """Conditions and observables of n impacts, by column; the names are those of trials.csv.
 
-    Parameters
-    ----------
-    columns
-        Each of shape (n,): the conditions, what trials.csv may hold, all other observables, then
-        `contacts`, `route` (`work` or `steps`) and `outcome`.
+    `columns`: each of shape (n,): the conditions, what trials.csv may hold, all other observables,
+    then `contacts`, `route` (`work` or `steps`) and `outcome`.
     """
 
     columns: Mapping[str, NDArray[Any]]

@@ -33,15 +33,10 @@ _FRESH.flags.writeable = False
 class Settings:
     """Accuracy and budgets of an integration.
 
-    Parameters
-    ----------
-    tolerance
-        Local error over the scale of the impact (speed, depth).
-    max_steps, max_contacts
-        Budgets; reaching one is an `Outcome`, not an error.
-    flight
-        How long after a separation the tip is followed for a re-contact [s]; nan: until nothing
-        that vibrates and no wall of the scar can bring it back.
+    - `tolerance`: local error over the scale of the impact (speed, depth).
+    - `max_steps`, `max_contacts`: budgets; reaching one is an `Outcome`, not an error.
+    - `flight`: how long after a separation the tip is followed for a re-contact [s]; nan: until
+      nothing that vibrates and no wall of the scar can bring it back.
     """
 
     tolerance: float = 2e-9
@@ -194,17 +189,11 @@ class Trace:
 def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) -> Trace:
     """Integrate one impact and keep its history: each row a state of the motion, none in between.
 
-    Parameters
-    ----------
-    points
-        At least so many rows during the first contact; flights between contacts are written with
-        the same distance, the flight after the last one is not.
+    `points`: at least so many rows during the first contact; flights between contacts are written
+    with the same distance, the flight after the last one is not.
 
-    Returns
-    -------
-    Trace
-        `penetration_m` is the law's depth, `clearance_m` the tip's distance from the remembered
-        surface (negative while it is pressed in), `place_m` the tip's centre along the flat.
+    Returned: `penetration_m` is the law's depth, `clearance_m` the tip's distance from the
+    remembered surface (negative while it is pressed in), `place_m` the tip's centre along the flat.
     """
     a = arrays_of(scene, settings)
     first, _ = _struck(scene, a, _UNWRITTEN)
@@ -224,9 +213,7 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     The fast path of inference: `body` starts from `arrays_of(scene).body` repeated, with the
     columns of `layout` (MASS, MU, V_Y, ...) overwritten.
 
-    Returns
-    -------
-    (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
+    Returned: (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
     """
     a = arrays_of(scene, settings)
     rows = np.ascontiguousarray(body, dtype=float)
@@ -241,9 +228,7 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
     Borders of a published fit are not located: a step that crosses one is repeated smaller, so
     the law should be a smooth one.
 
-    Returns
-    -------
-    (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
+    Returned: (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
     """
     out = np.full((len(scenes), c.N_OUT), np.nan)
     rows = [arrays_of(scene, settings, breaks=_SMOOTH) for scene in scenes]

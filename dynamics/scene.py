@@ -40,21 +40,13 @@ def _check(value: float, key: str, *, least: str = "a number above 0") -> None:
 class Striker:
     """A sphere, or a rod with two spherical tips, as a rigid body.
 
-    Parameters
-    ----------
-    mass
-        [kg].
-    tip_radius
-        Radius of the striking tip sphere [m].
-    length
-        Distance between the centres of the two tip spheres [m]; 0 for a sphere.
-    radius
-        Radius of the shank [m]; a sphere's own radius.
-    inertia
-        About the centre of mass, across the axis [kg m^2]; by default m (L^2/12 + r^2/4) for a
-        rod and 2/5 m r^2 for a sphere.
-    tip_flat_radius
-        Radius of a flat worn or cut on the tip [m].
+    - `mass`: [kg].
+    - `tip_radius`: radius of the striking tip sphere [m].
+    - `length`: distance between the centres of the two tip spheres [m]; 0 for a sphere.
+    - `radius`: radius of the shank [m]; a sphere's own radius.
+    - `inertia`: about the centre of mass, across the axis [kg m^2]; by default m (L^2/12 + r^2/4)
+      for a rod and 2/5 m r^2 for a sphere.
+    - `tip_flat_radius`: radius of a flat worn or cut on the tip [m].
     """
 
     mass: float
@@ -96,25 +88,17 @@ class FlowStress(Protocol):
 class ForceTransform:
     """Seam: what is done to the law's normal force; neutral by default.
 
-    Parameters
-    ----------
-    damping
-        chi of F (1 + chi d'), Hunt and Crossley's form [s/m].
-    radiation
-        kappa [m s/N]: waves sent into a half-space take F up by kappa (dF/d(depth))^2 d'
-        (elastically 2 E' a): their power is kappa (dF/dt)^2.
-    factors
-        Multiply the loading force, interpolated in ln(depth / R) between equally spaced
-        nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.
-    recovery_factors
-        Multiply the elastic recovery (peak depth minus residual depth) of a peak at the nodes of
-        `factors`.
-    shape
-        Added to the exponent of the recovery (3/2 for Hertz's).
-    given_back
-        Multiplies the force of the recovery: the share of the elastic work that comes back.
-    edge
-        Radius at which the tip ends [m]: beyond it a flat punch with its plastic limit.
+    - `damping`: chi of F (1 + chi d'), Hunt and Crossley's form [s/m].
+    - `radiation`: kappa [m s/N]: waves sent into a half-space take F up by kappa (dF/d(depth))^2 d'
+      (elastically 2 E' a): their power is kappa (dF/dt)^2.
+    - `factors`: multiply the loading force, interpolated in ln(depth / R) between equally spaced
+      nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.
+    - `recovery_factors`: multiply the elastic recovery (peak depth minus residual depth) of a peak
+      at the nodes of `factors`.
+    - `shape`: added to the exponent of the recovery (3/2 for Hertz's).
+    - `given_back`: multiplies the force of the recovery: the share of the elastic work that comes
+      back.
+    - `edge`: radius at which the tip ends [m]: beyond it a flat punch with its plastic limit.
     """
 
     damping: float = 0.0
@@ -131,19 +115,12 @@ class ForceTransform:
 class Friction:
     """Seam: the tangential law; Coulomb friction with stick by default.
 
-    Parameters
-    ----------
-    mu
-        Coefficient of friction at speed [-].
-    mu_static
-        Coefficient at rest [-]; by default equal to `mu`.
-    speed
-        Sliding speed over which `mu_static` decays to `mu` [m/s].
-    ploughing
-        Multiplies the ploughing term (4 / 3 pi) a / R that is added to `mu` [-].
-    stiffness
-        Tangential over normal stiffness of the contact, 2 E' a, before it slips at its edge
-        (Mindlin); infinite for one that slides or sticks without giving way [-].
+    - `mu`: coefficient of friction at speed [-].
+    - `mu_static`: coefficient at rest [-]; by default equal to `mu`.
+    - `speed`: sliding speed over which `mu_static` decays to `mu` [m/s].
+    - `ploughing`: multiplies the ploughing term (4 / 3 pi) a / R that is added to `mu` [-].
+    - `stiffness`: tangential over normal stiffness of the contact, 2 E' a, before it slips at its
+      edge (Mindlin); infinite for one that slides or sticks without giving way [-].
     """
 
     mu: float = 0.0
@@ -162,13 +139,10 @@ class Friction:
 class Support:
     """Seam: how the flat is held; rigid by default.
 
-    Parameters
-    ----------
-    mass, stiffness, damping
-        A flat of this mass [kg] on a spring [N/m] with a dashpot [N s/m].
-    plate_mobility
-        Zener's plate: the surface moves at this speed per force [m/(N s)],
-        1 / (8 sqrt(rho h D)); of a rod's end 1 / (rho c A).
+    - `mass`, `stiffness`, `damping`: a flat of this mass [kg] on a spring [N/m] with a dashpot [N
+      s/m].
+    - `plate_mobility`: Zener's plate: the surface moves at this speed per force [m/(N s)], 1 / (8
+      sqrt(rho h D)); of a rod's end 1 / (rho c A).
     """
 
     mass: float = math.inf
@@ -181,16 +155,10 @@ class Support:
 class Approach:
     """Seam: the motion at first touch.
 
-    Parameters
-    ----------
-    speed
-        Normal approach speed [m/s], positive.
-    angle
-        Between the rod's axis and the flat [rad]; pi/2 when upright.
-    tangential
-        Speed of the centre of mass along +x [m/s].
-    spin
-        Angular velocity, counter-clockwise positive [rad/s].
+    - `speed`: normal approach speed [m/s], positive.
+    - `angle`: between the rod's axis and the flat [rad]; pi/2 when upright.
+    - `tangential`: speed of the centre of mass along +x [m/s].
+    - `spin`: angular velocity, counter-clockwise positive [rad/s].
     """
 
     speed: float
@@ -218,12 +186,8 @@ CREEP = Approach(1e-5)
 class Press:
     """Seam: the striker is pressed on the flat without impact, and taken off.
 
-    Parameters
-    ----------
-    load
-        Largest load [N].
-    rate
-        Representative strain rate of the metal under it [1/s]; 0 for none.
+    `load`: largest load [N]; `rate`: representative strain rate of the metal under it [1/s]; 0 for
+    none.
     """
 
     load: float

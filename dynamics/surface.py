@@ -61,22 +61,13 @@ _PLAIN = {"cache": True, "_nrt": False, "error_model": "numpy"}
 class Imprint:
     """What one touch left on the flat.
 
-    Parameters
-    ----------
-    start, end
-        Ends of its bottom, over which the tip slid between peak and parting [m].
-    first, last
-        How far the edge of the contact reached [m].
-    deepest
-        Where the peak was [m].
-    depth
-        What it took off the flat that it met [m].
-    peak
-        Depth of the law at the peak [m]: the flat is hardened so far.
-    radius
-        Radius of contact at the peak [m].
-    give
-        q = R (elastic recovery)/radius^2 [-].
+    - `start`, `end`: ends of its bottom, over which the tip slid between peak and parting [m].
+    - `first`, `last`: how far the edge of the contact reached [m].
+    - `deepest`: where the peak was [m].
+    - `depth`: what it took off the flat that it met [m].
+    - `peak`: depth of the law at the peak [m]: the flat is hardened so far.
+    - `radius`: radius of contact at the peak [m].
+    - `give`: q = R (elastic recovery)/radius^2 [-].
     """
 
     start: float
@@ -94,16 +85,10 @@ class Imprint:
 class Spot:
     """The tip and the flat that it meets next; fresh by default.
 
-    Parameters
-    ----------
-    tip_peak
-        Largest depth of the law that the tip's metal has met [m].
-    tip_flat
-        Permanent flattening of the tip [m].
-    begin
-        Place of the next impact's first touch along the sliding direction [m].
-    imprints
-        What earlier touches left on the flat.
+    - `tip_peak`: largest depth of the law that the tip's metal has met [m].
+    - `tip_flat`: permanent flattening of the tip [m].
+    - `begin`: place of the next impact's first touch along the sliding direction [m].
+    - `imprints`: what earlier touches left on the flat.
     """
 
     tip_peak: float = 0.0

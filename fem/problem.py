@@ -23,22 +23,16 @@ DEEPEST = RULES.deepest
 class Accuracy:
     """Numerical settings; every number here influences results.
 
-    Parameters
-    ----------
-    level
-        Name of the settings, for tables.
-    divisions
-        Elements over the quarter arc.
-    coarse, fine
-        Ring width over radius away from the plastic contact edge and along its path.
-    step_ratio, elastic_step_ratio
-        Largest ratio of successive approaches after and before first yield.
-    penalty
-        Contact stiffness in E' over the edge length.
-    crowding
-        Angle of the elements at the axis over that of those at the surface.
-    flat_radius
-        Radius of the meshed half-space [R]; the truncation error of the force is 0.55 a/L.
+    - `level`: name of the settings, for tables.
+    - `divisions`: elements over the quarter arc.
+    - `coarse`, `fine`: ring width over radius away from the plastic contact edge and along its
+      path.
+    - `step_ratio`, `elastic_step_ratio`: largest ratio of successive approaches after and before
+      first yield.
+    - `penalty`: contact stiffness in E' over the edge length.
+    - `crowding`: angle of the elements at the axis over that of those at the surface.
+    - `flat_radius`: radius of the meshed half-space [R]; the truncation error of the force is 0.55
+      a/L.
     """
 
     level: str
@@ -117,34 +111,21 @@ class ContactProblem:
 
     The top face of the hemisphere moves down by Delta; yield is a true (Cauchy) stress.
 
-    Parameters
-    ----------
-    pair
-        The two bodies and the radius.
-    depths
-        Increasing Delta/R at which results are recorded.
-    unload_from
-        Delta/R from which the contact is also unloaded to zero force.
-    reload
-        Also load again after each unloading, up to where it began.
-    radius_at_least
-        Go on past the last depth until the contact radius a/R reaches this (0: stop there).
-    snapshots
-        Delta/R at which the full fields are kept.
-    profiles
-        Delta/R at which contact pressure and surface profiles are kept.
-    top
-        Whether the driven face is `free` to move radially or `held`.
-    speeds
-        Speed of the approach by depth, as in `Clock`; only a flow stress that feels the rate needs
-        it.
-    friction
-        Coulomb's coefficient between sphere and flat, 0 to 20; where it is large nothing slides.
+    - `pair`: the two bodies and the radius.
+    - `depths`: increasing Delta/R at which results are recorded.
+    - `unload_from`: Delta/R from which the contact is also unloaded to zero force.
+    - `reload`: also load again after each unloading, up to where it began.
+    - `radius_at_least`: go on past the last depth until the contact radius a/R reaches this (0:
+      stop there).
+    - `snapshots`: Delta/R at which the full fields are kept.
+    - `profiles`: Delta/R at which contact pressure and surface profiles are kept.
+    - `top`: whether the driven face is `free` to move radially or `held`.
+    - `speeds`: speed of the approach by depth, as in `Clock`; only a flow stress that feels the
+      rate needs it.
+    - `friction`: Coulomb's coefficient between sphere and flat, 0 to 20; where it is large nothing
+      slides.
 
-    Raises
-    ------
-    InputError
-        Depths that are not increasing or out of range.
+    Raises `InputError`: depths that are not increasing or out of range.
     """
 
     pair: Pair

@@ -15,27 +15,16 @@ from .problem import Accuracy, ContactProblem
 class Curve:
     """Results along a loading or unloading branch; every array has shape (n,).
 
-    Parameters
-    ----------
-    delta
-        Approach Delta [m].
-    force
-        Normal force F, the reaction at the driven face [N].
-    radius
-        Contact radius a, from the opening gap beside the contact [m].
-    radius_last_node
-        Radius of the last node in contact, as the thesis reads it [m].
-    sphere, flat
-        Displacement of the pole relative to the sphere's top, and of the flat's surface below it,
-        towards the body [m].
-    hardness
-        Mean pressure F/(pi a^2) [Pa].
-    force_defect
-        (contact force - reaction)/reaction [-].
-    energy_defect
-        (external work - stored - dissipated)/external work [-]; nan on unloading.
-    dissipated
-        Plastic work so far [J].
+    - `delta`: approach Delta [m].
+    - `force`: normal force F, the reaction at the driven face [N].
+    - `radius`: contact radius a, from the opening gap beside the contact [m].
+    - `radius_last_node`: radius of the last node in contact, as the thesis reads it [m].
+    - `sphere`, `flat`: displacement of the pole relative to the sphere's top, and of the flat's
+      surface below it, towards the body [m].
+    - `hardness`: mean pressure F/(pi a^2) [Pa].
+    - `force_defect`: (contact force - reaction)/reaction [-].
+    - `energy_defect`: (external work - stored - dissipated)/external work [-]; nan on unloading.
+    - `dissipated`: plastic work so far [J].
     """
 
     delta: Array
@@ -59,24 +48,15 @@ class Curve:
 class Unloading:
     """One unloading to zero force.
 
-    Parameters
-    ----------
-    depth
-        Delta/R at which it starts.
-    curve
-        From the turning point to the last state in contact.
-    residual_sphere, residual_flat
-        Permanent displacement of the pole and of the flat below it, force-free [m].
-    crater_r, crater_z
-        Force-free surface of the flat, shape (n,) [m].
-    tip_r, tip_z
-        Force-free surface of the sphere, its top at rest, shape (n,) [m].
-    steps
-        Steps taken.
-    outcome
-        How it ended.
-    reload
-        From the last state in contact up to the turning point again, if it was asked for.
+    - `depth`: Delta/R at which it starts.
+    - `curve`: from the turning point to the last state in contact.
+    - `residual_sphere`, `residual_flat`: permanent displacement of the pole and of the flat below
+      it, force-free [m].
+    - `crater_r`, `crater_z`: force-free surface of the flat, shape (n,) [m].
+    - `tip_r`, `tip_z`: force-free surface of the sphere, its top at rest, shape (n,) [m].
+    - `steps`: steps taken.
+    - `outcome`: how it ended.
+    - `reload`: from the last state in contact up to the turning point again, if it was asked for.
     """
 
     depth: float
@@ -101,16 +81,11 @@ class Unloading:
 class Profile:
     """Contact pressure and shape of the two surfaces at one depth.
 
-    Parameters
-    ----------
-    depth
-        Delta/R.
-    sphere_r, sphere_z
-        Current coordinates of the sphere's surface nodes, shape (n_slave,) [m].
-    pressure
-        Contact pressure there, on the current area, shape (n_slave,) [Pa].
-    flat_r, flat_z
-        Current coordinates of the flat's surface nodes, shape (n_master,) [m].
+    - `depth`: Delta/R.
+    - `sphere_r`, `sphere_z`: current coordinates of the sphere's surface nodes, shape (n_slave,)
+      [m].
+    - `pressure`: contact pressure there, on the current area, shape (n_slave,) [Pa].
+    - `flat_r`, `flat_z`: current coordinates of the flat's surface nodes, shape (n_master,) [m].
     """
 
     depth: float
@@ -125,27 +100,17 @@ class Profile:
 class Snapshot:
     """Fields of one state.
 
-    Parameters
-    ----------
-    depth
-        Delta/R.
-    points, quads
-        Reference coordinates (r, z), shape (n_nodes, 2) [m], and elements, shape (n_elements, 4).
-    n_sphere_quads
-        The sphere's elements come first; this many.
-    displacement
-        Shape (n_nodes, 2) [m].
-    von_mises
-        Cauchy von Mises stress at the element centres (mean of the points), shape (n_elements,)
-        [Pa].
-    plastic_strain
-        Equivalent plastic strain, likewise [-].
-    mean_stress
-        Mean Cauchy stress (negative in compression), likewise [Pa].
-    stress
-        Cauchy stress (rr, zz, rz, tt), mean of the points, shape (n_elements, 4) [Pa].
-    profile
-        The two surfaces and the contact pressure.
+    - `depth`: Delta/R.
+    - `points`, `quads`: reference coordinates (r, z), shape (n_nodes, 2) [m], and elements, shape
+      (n_elements, 4).
+    - `n_sphere_quads`: the sphere's elements come first; this many.
+    - `displacement`: shape (n_nodes, 2) [m].
+    - `von_mises`: Cauchy von Mises stress at the element centres (mean of the points), shape
+      (n_elements,) [Pa].
+    - `plastic_strain`: equivalent plastic strain, likewise [-].
+    - `mean_stress`: mean Cauchy stress (negative in compression), likewise [Pa].
+    - `stress`: Cauchy stress (rr, zz, rz, tt), mean of the points, shape (n_elements, 4) [Pa].
+    - `profile`: the two surfaces and the contact pressure.
     """
 
     depth: float
@@ -187,26 +152,15 @@ class Counters:
 class Solution:
     """Everything a solve gives.
 
-    Parameters
-    ----------
-    problem, accuracy
-        What was asked.
-    outcome
-        How it ended.
-    loading
-        Results at the recorded depths.
-    unloadings
-        One for each depth of `problem.unload_from` that was reached.
-    snapshots
-        One for each depth of `problem.snapshots` that was reached.
-    counters
-        Steps, iterations, processor time.
-    mesh_digest
-        SHA-256 of the mesh.
-    profiles
-        One for each depth of `problem.profiles` that was reached.
-    boundary, yield_measure
-        What is driven and which stress yields, in words.
+    - `problem`, `accuracy`: what was asked.
+    - `outcome`: how it ended.
+    - `loading`: results at the recorded depths.
+    - `unloadings`: one for each depth of `problem.unload_from` that was reached.
+    - `snapshots`: one for each depth of `problem.snapshots` that was reached.
+    - `counters`: steps, iterations, processor time.
+    - `mesh_digest`: SHA-256 of the mesh.
+    - `profiles`: one for each depth of `problem.profiles` that was reached.
+    - `boundary`, `yield_measure`: what is driven and which stress yields, in words.
     """
 
     problem: ContactProblem

@@ -33,22 +33,13 @@ def solve(
 ) -> Solution:
     """Solve the contact of a sphere and a flat through loading and unloading.
 
-    Parameters
-    ----------
-    problem
-        The pair and the depths.
-    accuracy
-        Numerical settings.
-    progress
-        Called with the fraction done, 0 to 1, after each step.
-    time_limit_s
-        Wall-clock limit; the solution then holds what was reached.
+    - `problem`: the pair and the depths.
+    - `accuracy`: numerical settings.
+    - `progress`: called with the fraction done, 0 to 1, after each step.
+    - `time_limit_s`: wall-clock limit; the solution then holds what was reached.
 
-    Returns
-    -------
-    Solution
-        Curves, unloadings and counters; `outcome` says how it ended. A solve that does not
-        converge is a result too, with all that was reached.
+    Returned: curves, unloadings and counters; `outcome` says how it ended. A solve that does not
+    converge is a result too, with all that was reached.
     """
     tally = Tally()
     found = _Found(problem)

@@ -32,16 +32,10 @@ ENOUGH = RULES.form_settled
 class FormFit:
     """Result of the regression.
 
-    Parameters
-    ----------
-    values, standard_errors
-        By the order of `COEFFICIENTS`, shape (n,).
-    covariance
-        Allowing for rows of one combination that move together, shape (n, n).
-    errors
-        Errors on the fitted rows.
-    outcome
-        How the regression ended.
+    - `values`, `standard_errors`: by the order of `COEFFICIENTS`, shape (n,).
+    - `covariance`: allowing for rows of one combination that move together, shape (n, n).
+    - `errors`: errors on the fitted rows.
+    - `outcome`: how the regression ended.
     """
 
     values: Array

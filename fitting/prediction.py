@@ -17,21 +17,14 @@ from .table import ResidualTable, Table
 class Errors:
     """(mean, largest) error beyond first yield.
 
-    Parameters
-    ----------
-    force, radius, hardness
-        Relative.
-    share
-        Absolute.
-    left_sphere, left_flat
-        Residual depth of the body over Delta_m, absolute, all turning points.
-    left
-        Whole residual depth, relative, turning points beyond five critical depths.
-    exponent
-        Of the unloading curve, absolute.
-    given_back
-        Elastic energy of the unloading at equal peak force, relative, turning points beyond five
-        critical depths.
+    - `force`, `radius`, `hardness`: relative.
+    - `share`: absolute.
+    - `left_sphere`, `left_flat`: residual depth of the body over Delta_m, absolute, all turning
+      points.
+    - `left`: whole residual depth, relative, turning points beyond five critical depths.
+    - `exponent`: of the unloading curve, absolute.
+    - `given_back`: elastic energy of the unloading at equal peak force, relative, turning points
+      beyond five critical depths.
     """
 
     force: tuple[float, float]

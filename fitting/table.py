@@ -29,26 +29,16 @@ _COARSEST = "smoke"
 class Table:
     """Loading rows of all cases; every array has shape (n,) and is dimensionless.
 
-    Parameters
-    ----------
-    case
-        Number of the material combination that the row belongs to.
-    D
-        Delta/R.
-    w
-        Delta/delta_c.
-    force
-        F/(E' R^2).
-    radius
-        a/R.
-    share
-        delta_s*.
-    edge_seen
-        Whether the opening gap beside the contact was wide enough to be fitted. Where it was not,
-        the radius is that of a node, up to an element too small, and the surface that can touch
-        ends close by: force and radius of such a row are not fitted.
-    pairs, names
-        Pair and name of each case, length n_cases.
+    - `case`: number of the material combination that the row belongs to.
+    - `D`: Delta/R.
+    - `w`: delta/delta_c.
+    - `force`: F/(E' R^2).
+    - `radius`: a/R.
+    - `share`: delta_s*.
+    - `edge_seen`: whether the opening gap beside the contact was wide enough to be fitted. Where it
+      was not, the radius is that of a node, up to an element too small, and the surface that can
+      touch ends close by: force and radius of such a row are not fitted.
+    - `pairs`, `names`: pair and name of each case, length n_cases.
     """
 
     case: Integers
@@ -81,18 +71,12 @@ class Table:
 class ResidualTable:
     """Unloadings of all cases; every array has shape (n,) and is dimensionless.
 
-    Parameters
-    ----------
-    case, D, w
-        As in `Table`, at the turning point.
-    total
-        Permanent approach over the largest one.
-    sphere_part
-        The sphere's part of the permanent approach.
-    exponent
-        N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, so that the elastic energy is right.
-    pairs, names
-        As in `Table`.
+    - `case`, `D`, `w`: as in `Table`, at the turning point.
+    - `total`: permanent approach over the largest one.
+    - `sphere_part`: the sphere's part of the permanent approach.
+    - `exponent`: N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, so that the elastic energy
+      is right.
+    - `pairs`, `names`: as in `Table`.
     """
 
     case: Integers

@@ -31,10 +31,7 @@ def law_named(name: str) -> ContactLaw:
     that `dentscope fit` wrote is its law (`fitted.json:compact`, `:hardening`: the others).
     Another package may add laws (`core.inputs.added`).
 
-    Raises
-    ------
-    InputError
-        There is none; the message lists the known ones.
+    Raises `InputError`: there is none; the message lists the known ones.
     """
     if is_file(name):
         return read_law(name)

@@ -101,27 +101,16 @@ class Standing(IntEnum):
 class ContactLaw(ABC):
     """A contact law; concrete laws fill in the kernels and say where they come from.
 
-    Parameters
-    ----------
-    name
-        Key in `LAWS`.
-    title
-        Author and year.
-    source
-        Publication.
-    equations
-        Equation numbers in the thesis, and in the source where it was read.
-    standing
-        Where the equations were read.
-    domain
-        Range of validity.
-    breaks
-        Clauses of the contract that the published form breaks, with the size in percent; each
-        begins with one of `CLAUSES`.
-    regime
-        Which body the law lets deform: "flattening", "indentation" or "either".
-    read
-        The sources read, and for which equations.
+    - `name`: key in `LAWS`.
+    - `title`: author and year.
+    - `source`: publication.
+    - `equations`: equation numbers in the thesis, and in the source where it was read.
+    - `standing`: where the equations were read.
+    - `domain`: range of validity.
+    - `breaks`: clauses of the contract that the published form breaks, with the size in percent;
+      each begins with one of `CLAUSES`.
+    - `regime`: which body the law lets deform: "flattening", "indentation" or "either".
+    - `read`: the sources read, and for which equations.
     """
 
     name: str
@@ -154,17 +143,10 @@ class ContactLaw(ABC):
     def loading(self, pair: Pairs, depth: Depths) -> Array:
         """Force on first loading.
 
-        Parameters
-        ----------
-        pair
-            One pair, or one for each entry of the first axis of `depth`.
-        depth
-            Approach, shape (...) [m]; zero or less is an open contact.
+        `pair`: one pair, or one for each entry of the first axis of `depth`; `depth`: approach,
+        shape (...) [m]; zero or less is an open contact.
 
-        Returns
-        -------
-        ndarray
-            Force, shape (...) [N].
+        Returned: force, shape (...) [N].
         """
         par, row, d, shape = rows_of(self.parameters, pair, depth)
         out = np.zeros(d.size)
@@ -196,26 +178,16 @@ class ContactLaw(ABC):
     def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
         """How far off the law may be at a depth of first loading: standard deviations.
 
-        Parameters
-        ----------
-        pair
-            The two bodies.
-        depth
-            Approach, shape (...) [m]; for dent and energy the depth of the turning point.
+        `pair`: the two bodies; `depth`: approach, shape (...) [m]; for dent and energy the depth of
+        the turning point.
 
-        Returns
-        -------
-        Uncertainty
-            Of force, contact radius, dent and energy given back relative, of the sphere's share of
-            the approach absolute; each of shape (...). They are those of the law against finite
-            elements of the same bodies, elastic and perfectly plastic: that a real metal is not
-            such a body comes on top. Errors of one pair go together over the depth.
+        Returned: of force, contact radius, dent and energy given back relative, of the sphere's
+        share of the approach absolute; each of shape (...). They are those of the law against
+        finite elements of the same bodies, elastic and perfectly plastic: that a real metal is not
+        such a body comes on top. Errors of one pair go together over the depth.
 
-        Raises
-        ------
-        InputError
-            The law states none, as published ones: `dynamics.told.beside.beside_fitted` says by how
-            much such a law misses the fitted one.
+        Raises `InputError`: the law states none, as published ones:
+        `dynamics.told.beside.beside_fitted` says by how much such a law misses the fitted one.
         """
         raise InputError(
             f"{self.name} states no error", key="law", allowed="compact, fitted or a solved pair"

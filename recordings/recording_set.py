@@ -47,17 +47,11 @@ _NITROGEN = 77.4
 class ApproachMotion:
     """The motion just before touch, each array of shape (n,).
 
-    Parameters
-    ----------
-    normal, normal_std
-        Normal approach speed and its standard deviation [m/s]; the second is NaN where the set
-        says nothing, both are of a press.
-    angle
-        Between axis and flat for a rod, pi/2 for a sphere [rad].
-    tangential
-        Velocity of the centre of mass along +x [m/s].
-    spin
-        Angular velocity, counter-clockwise [rad/s].
+    - `normal`, `normal_std`: normal approach speed and its standard deviation [m/s]; the second is
+      NaN where the set says nothing, both are of a press.
+    - `angle`: between axis and flat for a rod, pi/2 for a sphere [rad].
+    - `tangential`: velocity of the centre of mass along +x [m/s].
+    - `spin`: angular velocity, counter-clockwise [rad/s].
     """
 
     normal: Array
@@ -71,23 +65,14 @@ class ApproachMotion:
 class RecordingSet:
     """A recording set in memory.
 
-    Parameters
-    ----------
-    setup
-        Everything in set.toml; attributes carry the names of its keys.
-    trials
-        The rows of trials.csv as arrays of shape (n,).
-    traces, profiles
-        Files by name of the trial; `trace(NAME)` and `profile(NAME)` read them.
-    folder
-        Where the set was read from; `None` for one made in memory.
-    notes
-        Remarks of the reader that are no mistakes.
-    to_fill
-        Keys of set.toml that are still to be filled in; only a set that was read as unfinished has
-        some.
-    flows
-        Measured flow curves by the key of their body, `target` or `strikers.NAME`.
+    - `setup`: everything in set.toml; attributes carry the names of its keys.
+    - `trials`: the rows of trials.csv as arrays of shape (n,).
+    - `traces`, `profiles`: files by name of the trial; `trace(NAME)` and `profile(NAME)` read them.
+    - `folder`: where the set was read from; `None` for one made in memory.
+    - `notes`: remarks of the reader that are no mistakes.
+    - `to_fill`: keys of set.toml that are still to be filled in; only a set that was read as
+      unfinished has some.
+    - `flows`: measured flow curves by the key of their body, `target` or `strikers.NAME`.
     """
 
     setup: SetFile
@@ -235,18 +220,11 @@ class RecordingSet:
 def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
     """Read a recording set.
 
-    Parameters
-    ----------
-    folder
-        The folder that holds set.toml and trials.csv.
-    unfinished
-        Whether values and noise of set.toml may still be missing; sizes to be filled in are then 1.
+    `folder`: the folder that holds set.toml and trials.csv; `unfinished`: whether values and noise
+    of set.toml may still be missing; sizes to be filled in are then 1.
 
-    Raises
-    ------
-    InputErrors
-        Every mistake found in all files of the folder, one line each: file, row, column or key,
-        what was found, what is allowed.
+    Raises `InputErrors`: every mistake found in all files of the folder, one line each: file, row,
+    column or key, what was found, what is allowed.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -484,17 +462,9 @@ def _notes(found: RecordingSet) -> list[str]:
 def write(found: RecordingSet, folder: Path | str) -> None:
     """Write a recording set; its traces and profiles are copied into the folder.
 
-    Parameters
-    ----------
-    found
-        The set.
-    folder
-        Made if it does not exist; set.toml and trials.csv in it are replaced.
+    `folder`: made if it does not exist; set.toml and trials.csv in it are replaced.
 
-    Raises
-    ------
-    InputError
-        It cannot be written.
+    Raises `InputError`: it cannot be written.
     """
     with locked(Path(folder)):
         write_files(Path(folder), files_of(found))

@@ -40,33 +40,24 @@ class Trials:
 
     Every array has shape (n,), is read-only, and holds NaN where the table has an empty cell.
 
-    Parameters
-    ----------
-    trial, striker
-        Name of the trial; name of its striker in set.toml.
-    angle_deg
-        Angle [deg]: rod, between axis and flat; sphere, between velocity and flat; 90 of a press.
-    impact_speed_m_s, drop_height_m
-        As the table gives them: normal approach speed [m/s], height of fall [m]; at least one of an
-        impact, none of a press.
-    angle_deg_std, impact_speed_m_s_std, drop_height_m_std
-        Standard deviations [deg, m/s, m]; that of a height is common to all trials of it.
-    temperature_K, order, batch
-        Temperature [K]; place in the order of testing; session, 1 where it is not told.
-    approach_tangential_m_s, approach_spin_rad_s
-        Tangential speed of the centre [m/s] and angular velocity [rad/s] before.
-    load_N, load_N_std
-        Largest load of a quasi-static press and its standard deviation [N].
-    press_rate_per_s
-        Strain rate of a press [1/s].
-    spot, note
-        Same text: same place on the flat; free text.
-    varied
-        Columns `x_NAME` by name: conditions that no simulation knows, as they are written.
-    observables
-        Measured columns by name.
-    observables_std
-        Standard deviations that the table gives (`NAME_std`), by the observable's name.
+    - `trial`, `striker`: name of the trial; name of its striker in set.toml.
+    - `angle_deg`: angle [deg]: rod, between axis and flat; sphere, between velocity and flat; 90 of
+      a press.
+    - `impact_speed_m_s`, `drop_height_m`: as the table gives them: normal approach speed [m/s],
+      height of fall [m]; at least one of an impact, none of a press.
+    - `angle_deg_std`, `impact_speed_m_s_std`, `drop_height_m_std`: standard deviations [deg, m/s,
+      m]; that of a height is common to all trials of it.
+    - `temperature_K`, `order`, `batch`: temperature [K]; place in the order of testing; session, 1
+      where it is not told.
+    - `approach_tangential_m_s`, `approach_spin_rad_s`: tangential speed of the centre [m/s] and
+      angular velocity [rad/s] before.
+    - `load_N`, `load_N_std`: largest load of a quasi-static press and its standard deviation [N].
+    - `press_rate_per_s`: strain rate of a press [1/s].
+    - `spot`, `note`: same text: same place on the flat; free text.
+    - `varied`: columns `x_NAME` by name: conditions that no simulation knows, as they are written.
+    - `observables`: measured columns by name.
+    - `observables_std`: standard deviations that the table gives (`NAME_std`), by the observable's
+      name.
     """
 
     trial: tuple[str, ...]

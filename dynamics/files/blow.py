@@ -45,16 +45,8 @@ _TOO_DEEP = (
 class Blow:
     """One blow, by every law that was asked for.
 
-    Parameters
-    ----------
-    name
-        Of the set-up.
-    traces
-        History of the last repeat, by law.
-    rows
-        Observables of every repeat by every law, SI, units in the names.
-    setup, laws
-        What was asked for.
+    `name`: of the set-up; `traces`: history of the last repeat, by law; `rows`: observables of
+    every repeat by every law, SI, units in the names; `setup`, `laws`: what was asked for.
     """
 
     name: str

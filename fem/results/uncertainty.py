@@ -34,16 +34,7 @@ MESH_ERRORS_FORMAT = "dentscope-mesh-errors/1"
 class CurveUncertainty:
     """Standard uncertainty of a loading curve's columns, each of shape (n,).
 
-    Parameters
-    ----------
-    force
-        [N].
-    radius, radius_last_node
-        [m].
-    sphere_share
-        [-].
-    hardness
-        [Pa].
+    `force`: [N]; `radius`, `radius_last_node`: [m]; `sphere_share`: [-]; `hardness`: [Pa].
     """
 
     force: Array

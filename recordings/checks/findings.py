@@ -33,18 +33,11 @@ class Severity(Enum):
 class Finding:
     """One check of a set.
 
-    Parameters
-    ----------
-    check
-        Name of the check and what it was made on.
-    severity
-        How much it matters.
-    message
-        What was compared, with numbers and units.
-    value, expected
-        The two numbers, in the unit of the message; NaN when there is none.
-    significance
-        Distance in standard deviations; NaN when the finding is no statistical one.
+    - `check`: name of the check and what it was made on.
+    - `severity`: how much it matters.
+    - `message`: what was compared, with numbers and units.
+    - `value`, `expected`: the two numbers, in the unit of the message; NaN when there is none.
+    - `significance`: distance in standard deviations; NaN when the finding is no statistical one.
     """
 
     check: str
