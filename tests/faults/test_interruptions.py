@@ -115,7 +115,7 @@ def _group(pid: int) -> list[int]:
     return found
 
 
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_is_left_behind(tmp_path: Path, sent: signal.Signals) -> None:
     script = tmp_path / "endless.py"
     script.write_text(ENDLESS)

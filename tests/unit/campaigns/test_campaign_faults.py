@@ -1,15 +1,12 @@
-"""Faults that a long run meets: kills in every phase, a full disk, readers beside a writer."""
+"""Faults that a long run meets: a full disk, readers beside a writer."""
 
 import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from dentscope.campaigns import Store, read_curves
-
-ROOT = Path(__file__).resolve().parents[3]
 
 # the product's store and main path with a solver that takes no time: writing is what is tested
 WRITER = """
@@ -103,11 +100,3 @@ def test_a_file_that_may_not_grow_keeps_what_is_there(tmp_path):
     assert "a file may not be larger here; all completed cases are kept" in last
     assert lines == []
     assert len(read_curves(path)) == 3
-
-
-def test_kills_of_coordinator_and_workers_lose_no_case():
-    script = ROOT / "tests" / "faults" / "kills.py"
-    command = [sys.executable, str(script), "--kills", "8", "--cases", "6"]
-    answer = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    assert "8 kills, 0 faults" in answer.stdout
