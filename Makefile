@@ -14,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check docs hooks wheel bench lock clean
+.PHONY: help install campaign fit diagnose figures recordings proof verify test check docs hooks wheel bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -30,9 +30,6 @@ campaign: $(STAMP) ## solve the finite-element cases of DESIGN into build/campai
 
 fit: $(STAMP) ## fit the closed forms to the campaign: coefficients, standard errors, report in build/fit
 	@$(BIN)/dentscope fit
-
-impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop height, every law
-	@$(BIN)/dentscope impact
 
 diagnose: $(STAMP) ## say what physics is missing in SET (the thesis's oblique impacts), report in build/diagnose
 	@$(BIN)/dentscope diagnose "$(SET)"

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import EXIT_NOT_CONVERGED
+from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.inputs.templates import template, write_new
 from ..core.output import write_figure
-from . import studies
 from .laws import laws_named
 from .shared.first_use import tell_first_use
 from .shared.places import folder_option, refuse_beside
@@ -26,9 +25,7 @@ if TYPE_CHECKING:
 
 def impact(
     context: typer.Context,
-    setup: Annotated[
-        Path | None, typer.Argument(help="Set-up file (TOML); without it, chapter 3 again.")
-    ] = None,
+    setup: Annotated[Path | None, typer.Argument(help="Set-up file (TOML).")] = None,
     law: Annotated[
         list[str] | None, typer.Option("--law", help="Contact law; repeat for several.")
     ] = None,
@@ -44,19 +41,18 @@ def impact(
 ) -> None:
     """Simulate impacts by the fitted law, published ones beside it.
 
-    With a file (the keys of a recording set's set.toml, [impact] and [sweep]): all observables of
-    each law, histories, CSV and HDF5; every combination of [sweep] into CSV and Parquet. Without
-    one, in a checkout: the thesis's rod dropped on the thesis's flat (chapter 3), each law beside
-    the measured values.
+    Of a file (the keys of a recording set's set.toml, [impact] and [sweep]): all observables of
+    each law, histories, CSV and HDF5; every combination of [sweep] into CSV and Parquet.
     """
     if new:
         refuse_beside(context, "beside --new", "law", "exact", "out")
         target = setup or Path(f"{new}.toml")
         typer.echo(write_new(template(new), target, command="impact"))
     elif setup is None:
-        refuse_beside(context, "without a set-up", "exact")
-        studies.needed_for("`dentscope impact` without a set-up file")
-        leave_if_unfinished(studies.module("chapter3").chapter3(law or [], out))
+        raise InputError(
+            "no file", source="command line", key="SETUP",
+            allowed="a TOML with [target], [strikers.NAME] and [impact]; --new writes one",
+        )  # fmt: skip
     else:
         _from_file(setup, law or [], out, exact=exact)
 

@@ -62,10 +62,3 @@ def test_file_and_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 2
     told = "trial.0.friction_impulse_ratio: 0.9 makes the tip stick"
     assert told in capsys.readouterr().err
-
-
-def test_chapter_3_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["impact", "--law", "hertz", "--law", "ghaednia", "--out", str(tmp_path)]) == 0
-    printed = capsys.readouterr().out
-    assert "0.151 kg" in printed
-    assert (tmp_path / "chapter3.png").stat().st_size > 1000
