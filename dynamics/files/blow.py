@@ -172,6 +172,7 @@ class Blow:
                 _cell(
                     scale * shown[law][key],
                     *(scale * x for x in self._interval(law, key, exact=exact)),
+                    *(scale * x for x in _reach(key, self[law])),
                 )
                 if law in shown
                 else "unfinished" * (key == "restitution")
@@ -262,6 +263,10 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
 
 
 _LEFT = ("residual_flat_m", "residual_sphere_m")
+_SIGNED = (
+    "rebound_spin_rad_s", "tangential_rebound_m_s", "tangential_restitution",
+    "friction_impulse_ratio",
+)  # fmt: skip
 
 
 def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
@@ -281,19 +286,41 @@ def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
     ]
 
 
+def _reach(key: str, found: Impact) -> tuple[float, float]:
+    """How far up and down a number can go at all: nothing below 0 but motion along the flat.
+
+    No restitution rises above 1, nor the rebound above the approach, as far as they have not.
+    """
+    if key in _SIGNED:
+        return math.inf, math.inf
+    value = float(getattr(found, key, math.inf))
+    most = math.inf
+    if key.endswith("restitution"):
+        most = 1.0
+    elif key == "rebound_speed_m_s" and found.restitution > 0.0:
+        most = value / found.restitution
+    return max(most - value, 0.0), value
+
+
 def _least(key: str, largest: float) -> float:
     """Size up to which a number is shown as 0, by the largest of its unit."""
     return max(_SHOWN_ROUND_OFF * largest, ATOM if key in _LEFT else 0.0)
 
 
-def _cell(value: float, std: float = 0.0, up: float = 0.0, down: float = 0.0) -> str:
-    """A number with its interval: what may move it by more than `std` stands on its own side."""
+def _cell(
+    value: float, std: float = 0.0, up: float = 0.0, down: float = 0.0, rise: float = math.inf,
+    fall: float = math.inf,
+) -> str:  # fmt: skip
+    """A number with its interval: what may move it by more than `std` stands on its own side.
+
+    No side is longer than `rise` or `fall`.
+    """
     # a tip that comes straight down has no tangential speed to be given back
     if math.isnan(value):
         return "none"
     least = _SURE * abs(value)
     if value != 0.0 and max(up, down) > max(std, least):
-        sides = (math.hypot(std, x) for x in (up, down))
+        sides = (min(math.hypot(std, x), most) for x, most in ((up, rise), (down, fall)))
         above, below = (_number(float(f"{x:.1e}") if x > least else 0.0) for x in sides)
         return f"{_number(value)} +{above} -{below}"
     if value != 0.0 and std > least:

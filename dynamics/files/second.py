@@ -112,7 +112,8 @@ def mirror_error(pair: Pair, delta: float | Array) -> Array:
     """
     law, body = LAWS["fitted"], pair.weaker
     both = Pair(body, body, pair.R)
-    depth = np.asarray(delta, dtype=float)
+    # a film can leave no depth at all
+    depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
     with warnings.catch_warnings():
         # a rigid partner is beyond the strengths that were fitted
         warnings.simplefilter("ignore", DomainWarning)

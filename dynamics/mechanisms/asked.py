@@ -14,8 +14,11 @@ from ..result import Impact
 from ..scene import Scene
 from .base import Constants, Mechanism, Situation, Surroundings, attached, observed
 
-SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
-"""Column of trials.csv to number of the impact."""
+SIMULATED = {
+    **{name: row.simulated for name, row in OBSERVABLES.items() if row.simulated},
+    "residual_sphere_m": "residual_sphere_m",
+}
+"""Column of trials.csv, or what the striker keeps, to number of the impact."""
 
 
 @dataclass(frozen=True)

@@ -123,12 +123,13 @@ class Roughness(Mechanism):
     def after(
         self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
     ) -> Mapping[str, Array]:
-        """Set the depth that stays, of bulk and layer."""
+        """Set the depth that stays in either body, of bulk and layer."""
         left = []
         for (scene, _), peak in zip(situations, seen["peak_depth_m"], strict=True):
             table, dent = strength_table(scene.law, scene.pair), _layer_of(scene, values).dent
             left.append(np.interp(math.log(max(peak, table.depth[0])), table.log_depth, dent))
-        stays = {**seen, "permanent_depth_m": seen["permanent_depth_m"] * np.array(left)}
+        bodies = ("permanent_depth_m", "residual_sphere_m")
+        stays = {**seen, **{k: seen[k] * np.array(left) for k in bodies if k in seen}}
         if "recovered_depth_m" in seen:
             # what the recovery gives back in depth is not what it gives back in energy
             whole = seen["press_depth_m"]

@@ -12,12 +12,15 @@ def effect(other: Impact, found: Impact) -> str:
     """Return how `other` differs in dent and restitution, in spin where both stay as they are."""
     if not other.outcome.completed:
         return "the tip does not part within the budgets"
-    ratios = {"restitution": other.restitution / found.restitution}
+    back = found.restitution
+    ratios = {"restitution": other.restitution / back} if back > 0.0 else {}
     # the dent of the body that keeps most of it
     key = max(("residual_flat_m", "residual_sphere_m"), key=lambda name: getattr(found, name))
     if getattr(found, key) > ATOM:
         ratios = {"dent": getattr(other, key) / getattr(found, key), **ratios}
     told = {name: _percent(ratio) for name, ratio in ratios.items()}
+    if not back > 0.0:
+        told["restitution"] = f"{other.restitution:.3g} in place of 0"
     if set(told.values()) == {_percent(1.0)} and found.rebound_spin_rad_s != 0.0:
         told["spin"] = _percent(other.rebound_spin_rad_s / found.rebound_spin_rad_s)
     return ", ".join(f"{name} {change}" for name, change in told.items())

@@ -9,6 +9,7 @@ from dentscope.core import InputError, InputErrors, Material, Pair
 from dentscope.dynamics import Approach, Friction, Scene, Striker, strike
 from dentscope.dynamics.files.second import SecondSphere, mirror_error
 from dentscope.dynamics.files.setup import setup_of
+from dentscope.dynamics.told.band import last_blow
 from dentscope.models import LAWS
 
 STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)
@@ -112,6 +113,7 @@ def test_two_equal_spheres_are_each_others_mirror():
     off = mirror_error(Pair(body, body, 2.5e-3), deep * 2.5e-3)
     assert off == pytest.approx(solved, abs=0.015)
     assert mirror_error(Pair(HARD, HARD, 2.5e-3), 1e-9) == pytest.approx(0.0, abs=1e-4)
+    assert mirror_error(Pair(body, body, 2.5e-3), 0.0) == pytest.approx(0.0, abs=1e-4)
 
 
 def test_two_balls_lose_more_than_one_on_a_flat():
@@ -125,6 +127,21 @@ def test_two_balls_lose_more_than_one_on_a_flat():
             struck.append(strike(scene_).restitution)
         two, one = struck
         assert low < 1.0 - two / one < high
+
+
+def test_what_rough_spheres_keep_is_the_same_from_either_side():
+    """Asperities stay flat in either body, by its share of what stays."""
+    content = tomllib.loads(TWO) | {"mechanisms": {"roughness": {"roughness_m": 2e-6}}}
+    content["target"] |= {"radius_m": 0.004, "Sy_Pa": 7e8}
+    other = {**content, "target": dict(content["target"])}
+    swapped = {**content["strikers"]["ball"], "tip_radius_m": 0.004, "Sy_Pa": 7e8}
+    other["target"] |= {"radius_m": 0.005, "Sy_Pa": 6e8}
+    other["strikers"] = {"ball": swapped}
+    kept = []
+    for one in (content, other):
+        setup = setup_of(one, source="two.toml")
+        kept.append(last_blow(setup, LAWS["fitted"]).residual_m)
+    assert kept[1] == pytest.approx(kept[0], rel=1e-6)
 
 
 def test_what_only_one_shape_has_is_refused_for_the_other():

@@ -10,7 +10,7 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.inputs.templates import template
 from dentscope.dynamics import Approach, Scene, Settings, Striker, impacts, strike
-from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.blow import _cell, blow_of
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.files.sweep import SweepTable
 from dentscope.dynamics.told.band import LAW, METALS, SWEPT, band_of, swept_stds
@@ -128,6 +128,7 @@ impact_speed_m_s = 3.0
             assert -down - 1e-12 <= min(values) <= max(values) <= up + 1e-12
         ups.append(up)
         downs.append(down)
+    assert _cell(0.73, 0.01, 0.4, 0.9, 0.27, 0.73) == "0.73 +0.27 -0.73"
     assert ups[0] == ups[1] > ups[2] > ups[3] == 0.0
     assert downs[0] > 0.03 > downs[1] == downs[3] == 0.0
 
@@ -167,6 +168,8 @@ def test_friction_on_a_ball_changes_the_spin_alone(brass):
     blow = blow_of(setup_of(tomllib.loads(oblique), source="brass.toml"), [LAWS["fitted"]])
     assert "without friction: dent +0 %, restitution +0 %, spin -100 %" in blow.checks()
     assert effect(blow["fitted"], replace(blow["fitted"], restitution=1e3)).endswith("-100 %")
+    stays = replace(blow["fitted"], restitution=0.0)
+    assert effect(blow["fitted"], stays).endswith("in place of 0")
 
 
 def test_a_pressure_that_is_unknown_is_left_out_of_the_line_of_first_yield():
