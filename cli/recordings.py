@@ -210,8 +210,6 @@ def list_sets(
     from ..recordings.shipped import FOLDER
 
     folder = folder or FOLDER
-    if not folder.is_dir():
-        raise InputError("no such folder", source=str(folder), allowed="a folder with sets")
     sets = [path.parent for path in sorted(folder.glob("*/set.toml"))]
     if not sets:
         raise InputError("no set in it", source=str(folder), allowed="a folder with sets")

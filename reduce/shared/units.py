@@ -26,7 +26,7 @@ UNITS: dict[str, dict[str, float]] = {
     "length": LENGTH,
     "force": {
         "N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6,
-        "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY, "gf": 1e-3 * STANDARD_GRAVITY,
+        "daN": 10.0, "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY, "gf": 1e-3 * STANDARD_GRAVITY,
     },
     "acceleration": {
         "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY, "kg": 1e3 * STANDARD_GRAVITY,

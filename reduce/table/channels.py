@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -36,11 +36,7 @@ class Shown(Sequence[tuple[str, ...]]):
     def __len__(self) -> int:
         return len(self.values)
 
-    @overload
-    def __getitem__(self, k: int) -> tuple[str, ...]: ...
-    @overload
-    def __getitem__(self, k: slice) -> Shown: ...
-    def __getitem__(self, k: int | slice) -> tuple[str, ...] | Shown:
+    def __getitem__(self, k: Any) -> Any:
         if isinstance(k, slice):
             return Shown(self.values[k])
         return tuple(map(repr, map(float, self.values[k])))

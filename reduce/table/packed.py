@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from pathlib import Path, PurePosixPath
 from typing import Any
 from xml.etree import ElementTree
@@ -44,14 +45,11 @@ def packed_table(path: Path, member: str) -> tuple[bytes, str]:
                     allowed=f"up to {TABLE_BYTES // 10**6} MB",
                 )  # fmt: skip
             return archive.read(chosen), f"{path}/{chosen.filename}"
-    except (zipfile.BadZipFile, RuntimeError, NotImplementedError, OSError, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError) as error:
         raise InputError(
-            f"cannot be unpacked ({error})", source=str(path), allowed="a ZIP file without password"
-        ) from None
-    except zipfile.zlib.error as error:  # type: ignore[attr-defined]
-        raise InputError(
-            f"cannot be unpacked ({error})", source=str(path), allowed="a whole ZIP file"
-        ) from None
+            f"cannot be unpacked ({error})", source=str(path),
+            allowed="a whole ZIP file without password",
+        ) from None  # fmt: skip
 
 
 def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -51,22 +52,24 @@ def _stress_unit(table: Columns, column: int, options: TableOptions) -> float:
     A column of loads is divided by the specimen's area: as given, or from the header's line `Area`
     or `Diameter`.
     """
-    given, area_mm2 = options.value_unit, options.area_mm2
+    given = options.value_unit
     force = UNITS["force"].get(table.unit(column) if given == "file" else given)
     if force is None:
         return table.factor(column, "stress", given=given, key="value_unit")
-    area = None if area_mm2 is None else 1e-6 * area_mm2
-    for word, units in (("area", _AREA_UNITS), ("diameter", LENGTH)):
-        found = table.heading.quantity(word)
-        if area is None and found is not None and found[1] in units:
-            size = found[0] * units[found[1]]
-            area = size if word == "area" else 0.25 * math.pi * found[0] ** 2 * units[found[1]] ** 2
-    if area is None or not area > 0.0:
+    area = 1e-6 * (options.area_mm2 or 0.0) or _said(table, "area", _AREA_UNITS)
+    area = area or 0.25 * math.pi * _said(table, "diameter", LENGTH) ** 2
+    if not area > 0.0:
         raise InputError(
             f"column {table.names[column]!r} holds a load, and the file names no area",
             source=table.source, key="area_mm2", allowed="the specimen's cross-section",
         )  # fmt: skip
     return force / area
+
+
+def _said(table: Columns, word: str, units: Mapping[str, float]) -> float:
+    """The quantity that a header's line begins with a word [SI]; 0 without one."""
+    number, unit = table.heading.quantity(word) or (0.0, "")
+    return number * units.get(unit, 0.0)
 
 
 def _strain_unit(table: Columns, column: int, options: TableOptions) -> float:
@@ -75,17 +78,14 @@ def _strain_unit(table: Columns, column: int, options: TableOptions) -> float:
     A column of extensions is divided by the gauge length: as given in mm, or from the header's line
     `Gauge length` or `Gage length`.
     """
-    unit, given = table.unit(column), options.gauge_length_mm
+    unit = table.unit(column)
     if unit == "%":
         return 0.01
     if unit not in LENGTH:
         return 1.0
-    length = None if given is None else 1e-3 * given
-    for word in ("gauge length", "gage length"):
-        found = table.heading.quantity(word)
-        if length is None and found is not None and found[1] in LENGTH:
-            length = found[0] * LENGTH[found[1]]
-    if length is None or not length > 0.0:
+    said = (_said(table, word, LENGTH) for word in ("gauge length", "gage length"))
+    length = 1e-3 * (options.gauge_length_mm or 0.0) or next(filter(None, said), 0.0)
+    if not length > 0.0:
         raise InputError(
             f"column {table.names[column]!r} holds an extension, and the file names no gauge "
             "length", source=table.source, key="gauge_length_mm", allowed="the extensometer's",

@@ -47,8 +47,7 @@ def decimals_of(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn]) -
     """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it."""
     cells = (
         _CELL.fullmatch(row[c.place]) for row in rows for c in columns
-        if c.place < len(row) and c.kind.quantity != "text"
-        and not isinstance(row[c.place], NumberCell)
+        if c.kind.quantity != "text" and not isinstance(row[c.place], NumberCell)
     )  # fmt: skip
     numbers = (found["number"].strip() for found in cells if found)
     signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, numbers) if m}

@@ -73,12 +73,9 @@ class Sheet:
         seen = self.trials[0].observables
         across = next(n for n in APPROACHES if n in seen)
         up = next(n for n in seen if n in MEASURED)
-        x, y = (
-            np.array(
-                [t.observables[n].value if n in t.observables else np.nan for t in self.trials]
-            )
-            for n in (across, up)
-        )
+        without = Measured(math.nan, math.nan)
+        x, y = (np.array([t.observables.get(n, without).value for t in self.trials])
+                for n in (across, up))  # fmt: skip
         values = {"trials": Measured(float(len(self.trials)), math.nan)}
         return Reduced(
             path, values, self.trials, lambda to: draw_trials((across, x), (up, y), to), notes,
@@ -116,12 +113,14 @@ def read_sheet(
     if select:
         name, value = selection(select, source=source)
         place = _place(head, name, source, "select")
-        cells = [row[place] if place < len(row) else "" for row in rows[head.end :]]
-        picked = {head.end + k for k in rows_with(value, cells, source=source)}
-        rows = [row if k < head.end or k in picked else [] for k, row in enumerate(rows)]
+        picked = rows_with(value, [row[place] for row in rows[head.end :]], source=source)
+        below = [row if k in picked else [""] * len(row) for k, row in enumerate(rows[head.end :])]
+        rows = [*rows[: head.end], *below]
     decimals = decimals_of(rows[head.end :], kept) or decimals
-    found = trials_of(SheetRows(rows, head.end, kept, decimals, source), told)
-    return Sheet(found.trials, found.told, (*found.left_out, *others), found.striker)
+    trials, became, left, striker = trials_of(
+        SheetRows(rows, head.end, kept, decimals, source), told
+    )
+    return Sheet(trials, became, (*left, *others), striker)
 
 
 def _place(head: Head, name: str, source: str, key: str) -> int:
@@ -153,10 +152,13 @@ def _of_book(
 
 
 def _typed(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    """Cells as they are typed, all rows as wide as the widest."""
+    width = max(map(len, rows), default=0)
     return [
-        [cell if isinstance(cell, NumberCell) else cell.translate(_TYPED) for cell in row]
+        [*(c if isinstance(c, NumberCell) else c.translate(_TYPED) for c in row),
+         *[""] * (width - len(row))]
         for row in rows
-    ]
+    ]  # fmt: skip
 
 
 def _of_text(
@@ -168,7 +170,8 @@ def _of_text(
     they are.
     """
     texts = [decoded(raw, source)]
-    if not raw.startswith((b"\xff\xfe", b"\xfe\xff")) and not _is_utf8(raw):
+    utf8 = raw.decode(errors="ignore").encode() == raw
+    if not utf8 and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
     every = [text.splitlines(keepends=True) for text in texts]
     tried = [
@@ -179,11 +182,3 @@ def _of_text(
     lines, between, _ = max(tried, key=lambda one: one[2])
     rows = _typed(cells_of(lines, source, separator=between)[1])
     return between, rows, head_of(rows, given)
-
-
-def _is_utf8(raw: bytes) -> bool:
-    try:
-        raw.decode()
-    except UnicodeDecodeError:
-        return False
-    return True

@@ -9,23 +9,18 @@ from itertools import pairwise
 
 from ....core.errors import InputError
 from ....recordings.columns import CONDITIONS
+from ...shared.units import quantity_of
 from ..heading import is_unit
-from .kinds import (
-    CELSIUS,
-    MEAN,
-    is_spread,
-    kind_of,
-    named,
-    nearest,
-    said_unit,
-    unit_of,
-    without_unit,
-)
-from .words import APPROACHES, FROM_NORMAL, LATER, REBOUNDS, UNDERSTOOD, SheetKind, bare, letters
+from . import kinds
+from .kinds import CELSIUS, kind_of, unit_of
+from .words import APPROACHES, FROM_NORMAL, UNDERSTOOD, SheetKind, bare
 
 NOT_UNDERSTOOD = "left out: not understood"
 ABOVE = "row {}, left out: above the headers"
-_NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*(\D{0,6}|(±|\+/?-).*)")
+_NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
+_STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*\(([^)]*)\)")
+_ORDINAL = re.compile(r"\d\.?(st|nd|rd|th|e|er|re|ere|eme|o|a|回目?|次)\.?")
+"""Such as 2nd, 2ème, 2º, as `bare` has them."""
 _NAME = re.compile(r"[^\W\d_]\S{0,9}\d+")
 """Such as A1, K-17: letters and a number."""
 _SAID_OF = re.compile(r"\w\s*[:=]\s*(\w|$)")
@@ -55,7 +50,7 @@ class SheetColumn:
     @property
     def no_unit(self) -> str:
         """What is wrong with the header's unit."""
-        said = said_unit(self.header)
+        said = kinds.said_unit(self.header)
         return f"{said!r} is no unit of {self.kind.quantity} that is known" if said else (
             "the header names no unit"
         )  # fmt: skip
@@ -74,13 +69,13 @@ class Head:
     says: Sequence[str] = field(default=())
 
     @property
-    def known(self) -> tuple[int, int, int, int, int]:
-        """How much is understood: quantities, columns, units, texts; less where rows are many."""
-        kinds = [(kind, text) for text in self.says if (kind := kind_of(text)) is not None]
-        numbers = [(kind.name, text) for kind, text in kinds if kind.quantity != "text"]
-        units = sum(unit_of(text, kind) is not None for kind, text in kinds)
-        several = len({(name, is_spread(text)) for name, text in numbers})
-        return several, len(numbers), units, len(kinds) - len(numbers), self.first - self.end
+    def known(self) -> tuple[int, int, int, int]:
+        """How much is understood: quantities, columns, units, texts."""
+        said = [(kind, text) for text in self.says if (kind := kind_of(text)) is not None]
+        numbers = [(kind.name, text) for kind, text in said if kind.quantity != "text"]
+        units = sum(unit_of(text, kind) is not None for kind, text in said)
+        several = len({(name, kinds.is_spread(text)) for name, text in numbers})
+        return several, len(numbers), units, len(said) - len(numbers)
 
     @property
     def understood(self) -> int:
@@ -89,9 +84,13 @@ class Head:
 
 
 def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
-    """Return the headers that are understood best, `given` as the user says them."""
+    """Return the headers that are understood best, `given` as the user says them.
+
+    Of those alike the fewest rows, with words below them.
+    """
     found = Head()
     for first in range(len(rows[:_ROWS])):
+        here = Head()
         for end in range(first + 1, min(first + _DEPTH, len(rows)) + 1):
             headers = _headers(rows[first:end])
             if not headers:
@@ -99,31 +98,32 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
             units = [_is_units(row) for row in rows[first : end + 1]]
             if any(units[:-1]) or not units[-1] or end == len(rows):  # or these belong to them
                 says = [_as_given(header, given) for header in headers]
-                found = max(found, Head(first, end, headers, says), key=lambda head: head.known)
+                here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
+        found = max(found, here, key=lambda head: (head.known, head.first - head.end))
     return found
 
 
 def _as_given(header: str, given: Mapping[str, str]) -> str:
     """What the user says of a header, with its own unit where that has none."""
-    said = given.get(bare(header)) or given.get(bare(without_unit(header)), header)
+    said = given.get(bare(header)) or given.get(bare(kinds.without_unit(header)))
+    if said is None:
+        return _STD_OF.sub(r"\2 ±", header)
     kind = kind_of(said)
-    if said is header or kind is None or unit_of(said, kind) is not None:
+    if kind is None or unit_of(said, kind) is not None:
         return said
-    return f"{said} ({said_unit(header)})"
+    return f"{said} ({kinds.said_unit(header)})"
 
 
 def _headers(block: Sequence[Sequence[str]]) -> list[str]:
     """One header a column, of rows of titles, names and units; none where a row is of others."""
-    width = max(map(len, block))
-    padded = [[*row, *[""] * (width - len(row))] for row in block]
-    units = [row for row in padded if _is_units(row)]
-    names = [row for row in padded if row not in units]
+    units = [row for row in block if _is_units(row)]
+    names = [row for row in block if row not in units]
     *above, lowest = names or [[]]
     sound = all(map(_is_title, above)) and (_is_title(lowest) or _counts(lowest, above[-1:]))
     if not sound or len(units) > 1:
         return []
     below = [*names[1:], *units]
-    columns: list[list[tuple[str, bool]]] = [[] for _ in range(width)]
+    columns: list[list[tuple[str, bool]]] = [[] for _ in block[0]]
     for k, row in enumerate(names):
         title = ""
         for place, own in enumerate(row):
@@ -131,7 +131,7 @@ def _headers(block: Sequence[Sequence[str]]) -> list[str]:
             # a title that spans several columns stands over the first of them alone
             if own or (title and any(lower[place] for lower in below[k:])):
                 columns[place].append((title, bool(own)))
-    unit = units[0] if units else [""] * width
+    unit = units[0] if units else [""] * len(columns)
     return [_one(parts, unit[place].strip("()[] ")) for place, parts in enumerate(columns)]
 
 
@@ -161,7 +161,9 @@ def _is_title(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell]
     if not filled or (len(set(filled)) < 2 and row[0]):
         return False
-    numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
+    numbers = sum(
+        bool(_NUMBER.fullmatch(cell)) and not _ORDINAL.fullmatch(bare(cell)) for cell in filled
+    )
     lines = sum(_SAID_OF.search(cell) is not None for cell in filled)
     comment = row[0].startswith("#") and row[0].strip("# ")
     return not comment and 2 * lines < len(filled) and 2 * numbers <= len(filled)
@@ -187,7 +189,7 @@ def columns_of(
     Refuses headers of which none is, and two columns of the approach of one row.
     """
     if head.understood < 2:
-        asked = [nearest(header) for header in head.headers if kind_of(header) is None]
+        asked = [kinds.nearest(header) for header in head.headers if kind_of(header) is None]
         usual = (
             "columns such as drop height (cm), rebound height (mm), dent diameter (mm), or "
             "--column 'HEADER=rebound height mm'"
@@ -201,12 +203,12 @@ def columns_of(
         for k, row in enumerate(rows[: head.first], start=1) if any(row)
     ]  # fmt: skip
     columns: list[SheetColumn] = []
-    quantities = {kind for text in head.says if (kind := kind_of(text)) and not is_spread(text)}
+    quantities = {kind_of(text) for text in head.says if not kinds.is_spread(text)}
     for place, (header, says) in enumerate(zip(head.headers, head.says, strict=True)):
-        spread = is_spread(says)
-        kind = columns[-1].kind if spread and columns and not named(says) else kind_of(says)
-        cells = [row[place] for row in rows[head.end :] if place < len(row) and row[place]]
-        if kind is None and place == 0 and header and _are_names(cells):
+        spread = kinds.is_spread(says)
+        kind = kind_of(says) if kinds.named(says) or not spread else _beside(columns, place, says)
+        cells = [row[place] for row in rows[head.end :] if row[place]]
+        if kind is None and not columns and header and _are_names(cells):
             kind = kind_of("trial")
         if kind is not None and (kind.quantity == "text" or not spread or kind in quantities):
             spread = spread and kind.quantity != "text"
@@ -215,13 +217,23 @@ def columns_of(
             told.append((header or f"column {place + 1}", _not_understood(header)))
     kept = []
     for column in columns:
-        if column.spread and column.unit is None:
+        own = column.unit or quantity_of(kinds.said_unit(column.header))
+        if column.spread and not own:
             column.unit = next(c.unit for c in columns if c.kind == column.kind and not c.spread)
         if why := _left_out(column, columns, source):
             told.append((column.header, f"left out: {why}"))
         else:
             kept.append(column)
     return kept, told
+
+
+def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind | None:
+    """What a spread without a name is of: the number left of it, texts between, in its unit."""
+    for k, column in enumerate(reversed(columns), start=1):
+        if column.place == place - k and column.kind.quantity != "text":
+            same = quantity_of(kinds.said_unit(says)) in ("", column.kind.quantity)
+            return column.kind if same else None
+    return None
 
 
 def _are_names(cells: Sequence[str]) -> bool:
@@ -231,7 +243,7 @@ def _are_names(cells: Sequence[str]) -> bool:
 def _not_understood(header: str) -> str:
     if not header:
         return "left out: no header"
-    like = nearest(header)
+    like = kinds.nearest(header)
     return f"{NOT_UNDERSTOOD}: {like}" if like else NOT_UNDERSTOOD
 
 
@@ -245,8 +257,6 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
         )  # fmt: skip
     if column.kind.quantity == "text":
         return ""
-    if name in REBOUNDS and re.search(letters(LATER), words):
-        return "of a later bounce"
     same = [c for c in columns if c.kind == column.kind and not c.spread]
     if column.spread:
         alone = sum(c.kind == column.kind and c.spread for c in columns) < len(same)
@@ -258,7 +268,7 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
         )  # fmt: skip
     if same[0] is not column and name in CONDITIONS:
         return f"{name} stands in {same[0].header!r} already"
-    means = [c for c in same if MEAN.search(bare(c.header))]
+    means = [c for c in same if kinds.MEAN.search(bare(c.header))]
     return "sums up its neighbours" if column in means and len(means) < len(same) else ""
 
 

@@ -9,22 +9,14 @@ from functools import lru_cache
 from ....recordings.columns import CONDITIONS, MEASURED
 from ...shared.units import UNITS, quantity_of
 from ..heading import in_short
-from .words import (
-    ERRORS,
-    EXTREMES,
-    KINDS,
-    MEANS,
-    RANGE,
-    REBOUND,
-    SPREADS,
-    SheetKind,
-    bare,
-    letters,
-)
+from . import words
+from .words import KINDS, SheetKind, bare, letters
 
 CELSIUS = ("°C", "C", "degC")
 _UNIT_WITHIN = re.compile(r"(?:[\[(]\s*(?:(?:in|en)\s)?|\b(?:in|en|w|em)\s)\s*([^\s\]),;]+)")
 _BRACKETED = re.compile(r"[\[(][^\])]*([\])]|$)")
+_FORMULA = re.compile(r"\s*=[^=()\[\]]*(?=[(\[]|$)")
+"""Such as e = Vr/Vi."""
 _PER_SECOND = re.compile(r"m[ ·.]?s\^?[-⁻][1¹]|(?<=_)m_s\b")
 _UNITS = {unit for known in UNITS.values() for unit in known} | set(CELSIUS)
 _UNIT_AT_END = re.compile(
@@ -34,37 +26,32 @@ _UNIT_AT_END = re.compile(
 _LAST = (re.compile(r"(.*?)[\s/,]+(\S+)"), re.compile(r"(.*?)\s*/([^/]+)"))
 _ENDS = r"(?<![a-z]){}(?![a-z])"
 SUMMARY = re.compile(
-    rf"({MEANS}|{letters(SPREADS)}|{letters(EXTREMES)})"
+    rf"({words.MEANS}|{letters(words.SPREADS)}|{letters(words.EXTREMES)})"
     r"( (value|wert)| ?\(.*\)| ?\d.*| ?[a-z]? ?[=±].*)?"
 )
 """What says that a row sums up others."""
-SUMS = re.compile(_ENDS.format(f"({MEANS}|{letters(SPREADS)})"))
+SUMS = re.compile(_ENDS.format(f"({words.MEANS}|{letters(words.SPREADS)})"))
 """The same of what should name a trial."""
-MEAN = re.compile(_ENDS.format(f"({MEANS})"))
-_WIDE = _ENDS.format(f"({letters(SPREADS)}|{letters(ERRORS)})")
+MEAN = re.compile(_ENDS.format(f"({words.MEANS})"))
+_WIDE = _ENDS.format(f"({letters(words.SPREADS)}|{letters(words.ERRORS)})")
 _SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?", re.IGNORECASE)
 _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
 _PLAIN = CONDITIONS.keys() | MEASURED.keys()
-_ENDINGS = {
-    "_rad_s": "spin", "_m_s": "speed", "_m": "length", "_s": "time", "_N": "force",
-    "_deg": "angle", "_K": "temperature",
-}  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
 def kind_of(header: str) -> SheetKind | None:
     """Return what a header says, None where it is not understood."""
     if header in _PLAIN and not header.endswith("_std"):  # as a set has it, whatever its words say
-        own = next((kind for kind in KINDS if kind.name == header), None)
-        ending = next((e for e in _ENDINGS if header.endswith(e) and "per_s" not in header), "")
-        return own or SheetKind(header, _ENDINGS.get(ending, "number"), (header,))
-    words = named(header)
-    found = next((kind for kind in KINDS if kind.is_said(words)), None) if words else None
-    if found is None or (found.quantity != "text" and re.search(RANGE, words)):
+        return next((kind for kind in KINDS if kind.name == header), words.plain_kind(header))
+    header = _FORMULA.sub("", header)
+    text = named(header)
+    found = next((kind for kind in KINDS if kind.is_said(text)), None) if text else None
+    if found is None or (found.quantity != "text" and words.has(words.RANGE, text)):
         return None
     # E (J) is an energy, E (GPa) a modulus, T (ms) no temperature
-    unit = said_unit(header).strip("-%1") if len(words) == 1 else ""
+    unit = said_unit(header).strip("-%1") if len(text) == 1 else ""
     quantity = quantity_of(unit)
     other = quantity != found.quantity if quantity else found.quantity == "number"
     return None if other and unit not in CELSIUS and re.fullmatch(r"[^\s=]+", unit) else found
@@ -77,21 +64,21 @@ def is_spread(header: str) -> bool:
 
 def named(header: str) -> str:
     """Return the words of a header that name a quantity, without unit and spread."""
-    words = letters(without_unit(_PER_SECOND.sub("m/s", header)).replace("_", " "))
-    words = _SPREAD.sub("", _BESIDE.sub("", re.sub(r"-\s+", "", words))).strip(" .:,/")
-    ends = [found for found in (last.fullmatch(words) for last in _LAST) if found]
+    text = letters(without_unit(_PER_SECOND.sub("m/s", header)).replace("_", " "))
+    text = _SPREAD.sub("", _BESIDE.sub("", re.sub(r"-\s+", "", text))).strip(" .:,/")
+    ends = [found for found in (last.fullmatch(text) for last in _LAST) if found]
     known = [found[1] for found in ends if in_short(found[2]) in _UNITS]
     if known:
-        words = re.sub(r" (in|en|w|em)$", "", known[0])
+        text = re.sub(r" (in|en|w|em)$", "", known[0])
     elif in_short(header.strip()) in _UNITS:
         return ""
-    words = bare(words).strip(" .:,/")
+    text = bare(text).strip(" .:,/")
     # Drop (cm) is a height, Drop alone a number; Rebound 2 (mm) is one of several, a speed in m/s
     unit = said_unit(header)
-    back = re.fullmatch(rf"\w*({letters(REBOUND)})\w* ?\d*", words) and quantity_of(unit)
+    back = words.has(words.REBOUND, text) and quantity_of(unit)
     if back == "speed":
-        return f"{words} speed"
-    return f"{words} height" if back == "length" or (words == "drop" and unit) else words
+        return f"{text} speed"
+    return f"{text} height" if back == "length" or (text == "drop" and unit) else text
 
 
 def without_unit(header: str) -> str:

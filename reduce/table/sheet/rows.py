@@ -5,20 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
-from typing import NamedTuple
 
 from ....core.errors import InputError, InputErrors
 from ....recordings.columns import MEASURED
 from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
 from ...shared.units import UNITS
+from ..heading import in_short
+from . import words
 from .cell import number_in, why_not
 from .headers import ABOVE, NOT_UNDERSTOOD, SheetColumn
-from .kinds import SUMMARY, SUMS, kind_of, unit_of
+from .kinds import SUMMARY, SUMS, kind_of
 from .trial import Readings, became, mean_of, naming_of, note_of, restitutions_of, scatter_of
-from .words import APPROACHES, BALL_DIAMETER, BALL_MASS, BODY, REBOUNDS, UNDERSTOOD, bare
+from .words import APPROACHES, BODY, UNDERSTOOD, bare
 
+_SIZE = re.compile(r"\d[\d.,]*\s*(?P<unit>[^\W\d_]+)")
+_CLAUSE = re.compile(r"[^,;\d]*")
+_BALLS = [kind for kind in words.KINDS if kind.name in BODY]
+# limit: ratio of what is said of one ball's diameter or mass [-]; weighed again, rounded
+_ONE_BALL = 1.02
 _VARIED = ("temperature_K", "angle_deg")
 
 
@@ -36,13 +41,10 @@ class SheetRows:
     source: str
 
 
-class Taken(NamedTuple):
-    """What rows became: see `Sheet`."""
-
-    trials: tuple[Trial, ...]
-    told: tuple[tuple[str, str], ...]
-    left_out: tuple[str, ...]
-    striker: Mapping[str, Measured]
+Taken = tuple[
+    tuple[Trial, ...], tuple[tuple[str, str], ...], tuple[str, ...], Mapping[str, Measured]
+]  # fmt: skip
+"""What rows became: the fields of a `Sheet`."""
 
 
 @dataclass
@@ -69,7 +71,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     used = _above(sheet, found.body)
     told = [(header, used.get(became, became)) for header, became in told]
     for k, row in enumerate(rows[sheet.top :], start=sheet.top + 1):
-        aside = _aside(row, columns)
+        aside = _aside(row, sheet, found)
         if aside:
             found.left.append(f"row {k}{aside}")
         elif any(row):
@@ -83,7 +85,11 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
             "no row with an approach and something measured", source=sheet.source,
             allowed=f"a row a drop or a press{why}",
         )  # fmt: skip
-    _check_readings([seen for *_, seen in found.trials], sheet.source)
+    if later := _later(sheet, [seen for *_, seen in found.trials]):
+        told = [*told, *((c.header, "left out: of a later bounce") for c in later)]
+        once = [replace(c, taken=0) for c in columns if c not in later]
+        return trials_of(replace(sheet, columns=once), told)
+    _check_one_ball(sheet, [k for k, *_ in found.trials])
     striker = _striker(found.body)
     naming = naming_of(rows, [k for k, *_ in found.trials], columns)
     stds = scatter_of([(t.observables, seen) for _, t, seen in found.trials])
@@ -100,21 +106,28 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     ]  # fmt: skip
     own = [(c.header, became(c, columns, found.used, striker, naming)) for c in columns]
     lines = _lines(found, columns, [*stds], told)
-    return Taken(tuple(named), (*own, *told), (*found.left, *lines), striker)
+    return tuple(named), (*own, *told), (*found.left, *lines), striker
 
 
 def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
     """Add the ball's size and mass in lines above the headers; return what these lines became."""
     used = {}
     for k, row in enumerate(sheet.rows[: sheet.top], start=1):
-        parts = [part for cell in row for part in re.split(r"\s*[:=]\s*|\s+(?=\d)", cell) if part]
-        for name, said in pairwise(parts):
-            kind = kind_of(name)
-            if kind is not None and kind.name in BODY:
-                column = SheetColumn(0, name, kind, unit_of(name, kind))
-                if value := number_in(said, column, sheet.decimals):
+        line, start, said = " ".join(filter(None, row)), 0, []
+        for found in _SIZE.finditer(line):
+            text, spoken = bare(line[start : found.start()]), bare(line[: found.start()])
+            if not words.has(words.BALL, spoken):  # a 10 mm steel ball
+                text = spoken = bare(_CLAUSE.match(line, found.end())[0])  # type: ignore[index]
+            kind = next((n for n in _BALLS if in_short(found["unit"]) in UNITS[n.quantity]), None)
+            other = words.has(words.NO_BALL, re.split(words.letters(words.BALL), text)[-1])
+            if kind is not None and words.has(words.BALL, spoken) and not other:
+                column = SheetColumn(0, "", kind, None)
+                if value := number_in(found[0], column, sheet.decimals):
                     body.setdefault(kind.name, set()).add(value)
-                    used[ABOVE.format(k)] = f"row {k}: {kind.said} {said}, the striker's"
+                    said.append(f"{kind.said} {found[0]}")
+            start = found.end()
+        if said:
+            used[ABOVE.format(k)] = f"row {k}: {', '.join(said)}, the striker's"
     return used
 
 
@@ -140,7 +153,8 @@ def _take(row: Sequence[str], k: int, sheet: SheetRows, so_far: _SoFar) -> None:
         left.append(f"row {k}: {differs}")
     if crossed:
         so_far.across.append(str(k))
-    seen = {n: v for n, v in (found | {"restitution": back}).items() if v and n not in REBOUNDS}
+    every = found | {"restitution": back}
+    seen = {n: v for n, v in every.items() if v and n not in words.REBOUNDS}
     so_far.trials.append((k, Trial(last | {n: mean_of(v) for n, v in seen.items()}), seen))
     before = so_far.first_with.setdefault(tuple(row), k)
     if before < k and sum(map(bool, row)) > 2:
@@ -177,35 +191,56 @@ def _no_trial(
     return "" if last else "no drop height or speed"
 
 
+def _check_one_ball(sheet: SheetRows, taken: Sequence[int]) -> None:
+    """Refuse rows of several balls: a set has one striker a trial, and one body to fill in."""
+    for column in (c for c in sheet.columns if c.kind.name in ("ball", *BODY)):
+        cells = [sheet.rows[k - 1][column.place] for k in taken]
+        said = [*dict.fromkeys(filter(None, cells))]
+        apart = 1 < len(said) < len(cells)  # else each trial has its own of one kind
+        if column.kind.name != "ball":
+            sizes = [v.value for c in said if (v := number_in(c, column, sheet.decimals))]
+            apart = bool(sizes) and max(sizes) > _ONE_BALL * min(sizes)
+        if apart:
+            raise InputError(
+                f"several balls: {', '.join(said[:4])}", source=sheet.source, key=column.header,
+                allowed=f"one a set: dentscope reduce table {sheet.source} --holds trials --select "
+                f"'{column.header}={said[0]}' --into SET",
+            )  # fmt: skip
+
+
 def _striker(body: Mapping[str, set[Measured]]) -> dict[str, Measured]:
     """Keys of set.toml that a sheet has of the ball, where all rows say the same."""
     one = {name: next(iter(said)) for name, said in body.items() if len(said) == 1}
-    size, mass = one.get(BALL_DIAMETER), one.get(BALL_MASS)
+    size, mass = one.get(words.BALL_DIAMETER), one.get(words.BALL_MASS)
     found = {"tip_radius_m": size and size.scaled(0.5), "mass_kg": mass}
     return {key: value for key, value in found.items() if value and value.value > 0.0}
 
 
 def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
-    wrong = tuple(
-        InputError(
-            c.no_unit, source=source, key=c.header, allowed=", ".join(UNITS[c.kind.quantity])
-        )
-        for c in columns
-        if c.unitless
-    )
+    wrong = [(c, ", ".join(UNITS[c.kind.quantity])) for c in columns if c.unitless]
     if wrong:
-        raise InputErrors(wrong)
+        raise InputErrors(tuple(
+            InputError(c.no_unit, source=source, key=c.header, allowed=units) for c, units in wrong
+        ))  # fmt: skip
 
 
-def _check_readings(readings: Sequence[Readings], source: str) -> None:
-    """Refuse rebounds of one row that fall from column to column as bounces do, by e each."""
+def _later(sheet: SheetRows, readings: Sequence[Readings]) -> list[SheetColumn]:
+    """The columns of later bounces, where rebounds of a row fall as bounces do, by e each.
+
+    Refuses such rebounds where no header says which are later.
+    """
     pairs = [(e[0].value, e[1].value) for r in readings if len(e := r.get("restitution", [])) > 1]
-    if pairs and all(second < first**1.5 for first, second in pairs):
+    if not pairs or any(second >= first**1.5 for first, second in pairs):
+        return []
+    back = [c for c in sheet.columns if c.kind.name in words.REBOUNDS]
+    found = [c for c in back if words.has(words.LATER, bare(c.header))]
+    if not found:
         raise InputError(
             "each row's second rebound falls short of its first as the next bounce does",
-            source=source, key="restitution",
+            source=sheet.source, key="restitution",
             allowed="drops from one height in one row; later bounces without a header",
         )  # fmt: skip
+    return found
 
 
 def _check_columns(
@@ -217,33 +252,47 @@ def _check_columns(
     asks = dict.fromkeys(became for _, became in told if "--column" in became)
     asked = [became.removeprefix(f"{NOT_UNDERSTOOD}: ") for became in asks]
     hint = "; ".join(["", *asked[:3]]) or "; --column 'HEADER=quantity unit'"
-    for needed, words in (
+    for needed, such in (
         (APPROACHES, "drop height (cm), impact speed (m/s) or load (N)"),
-        ({*MEASURED, *REBOUNDS}, "rebound height (mm), restitution, dent diameter (mm)"),
+        ({*MEASURED, *words.REBOUNDS}, "rebound height (mm), restitution, dent diameter (mm)"),
     ):
         if not names & set(needed):
             raise InputError(
-                f"no column such as {words} is understood", source=source,
+                f"no column such as {such} is understood", source=source,
                 allowed=f"a name for one of {others}{hint}" if others else "one such column",
             )  # fmt: skip
 
 
-def _aside(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
+def _aside(row: Sequence[str], sheet: SheetRows, so_far: _SoFar) -> str:
     """Why a row is none of measured numbers: headers stand in it, or it sums up others."""
     words = [cell if not cell[:1].isdigit() else "" for cell in row]
     again = {place: kind for place, kind in enumerate(map(kind_of, words)) if kind is not None}
     if sum(kind.quantity != "text" for kind in again.values()) > 1:
-        if all(again.get(c.place) == c.kind for c in columns if not c.spread):
+        if all(again.get(c.place) == c.kind for c in sheet.columns if not c.spread):
             return ": left out, the headers once more"
         return " and those below: left out, headers of another table"
-    summary = _summary(row, columns)
-    return f": left out, {summary!r} sums up other rows" if summary else ""
+    if summary := _summary(row, sheet.columns):
+        return f": left out, {summary!r} sums up other rows"
+    other = _other_name(row, sheet, [k for k, *_ in so_far.trials])
+    return f": left out, {other!r} names no trial as those above are named" if other else ""
+
+
+def _other_name(row: Sequence[str], sheet: SheetRows, taken: Sequence[int]) -> str:
+    """The name of a row without a number, where all trials above have one: n, CV, śr."""
+    first = next(c.place for c in sheet.columns if c.kind.quantity != "text")
+    remarks = [c.place for c in sheet.columns if c.kind.name == "note"]
+    for place in (k for k in range(first) if k not in remarks):
+        above, cell = [sheet.rows[k - 1][place] for k in taken], row[place]
+        numbered = [any(map(str.isdigit, name)) for name in above]
+        if len(above) > 1 and all(numbered) and cell and not any(map(str.isdigit, cell)):
+            return cell
+    return ""
 
 
 def _summary(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
     """The cell that says that a row sums up others; a trial's note may say what it likes."""
     kinds = {c.place: c.kind.name for c in columns}
-    names = [row[k] for k, name in kinds.items() if name == "trial" and k < len(row)]
+    names = [row[k] for k, name in kinds.items() if name == "trial"]
     for place, cell in enumerate(row):
         word, kind = bare(cell).strip(" .:"), kinds.get(place)
         someone = kind == "person" and word in ("max", "min")
@@ -261,7 +310,7 @@ def _read(
     found: Readings = {}
     spreads, unread = dict[str, list[float]](), set[str]()
     for column in sheet.columns:
-        cell, name = row[column.place] if column.place < len(row) else "", column.kind.name
+        cell, name = row[column.place], column.kind.name
         if not cell:
             continue
         if column.kind.quantity == "text":

@@ -13,16 +13,8 @@ from ....recordings.columns import CONDITIONS
 from ....recordings.rules import RULES as OWN
 from ...bounces.options import GRAVITY
 from ...measured import Measured
+from . import words
 from .headers import SheetColumn
-from .words import (
-    APPROACHES,
-    BALL_MASS,
-    BODY,
-    DENTS,
-    REBOUND_HEIGHT,
-    REBOUND_SPEED,
-    REBOUNDS,
-)
 
 Readings = dict[str, list[Measured]]
 """Numbers of one row by kind."""
@@ -56,18 +48,18 @@ def restitutions_of(
 def _measured_back(
     found: Readings, last: Mapping[str, Measured]
 ) -> tuple[list[Measured], str, bool]:
-    fallen, speed = (last[name].value if name in last else None for name in APPROACHES[:2])
-    heights, speeds = (found.get(name, []) for name in REBOUNDS)
+    fallen, speed = (last[name].value if name in last else None for name in words.APPROACHES[:2])
+    heights, speeds = (found.get(name, []) for name in words.REBOUNDS)
     if fallen and heights:
-        return [_root(h.scaled(1.0 / fallen)) for h in heights], REBOUND_HEIGHT, False
+        return [_root(h.scaled(1.0 / fallen)) for h in heights], words.REBOUND_HEIGHT, False
     if speed and speeds:
-        return [v.scaled(1.0 / speed) for v in speeds], REBOUND_SPEED, False
+        return [v.scaled(1.0 / speed) for v in speeds], words.REBOUND_SPEED, False
     if speed and heights:
         up = [_root(h.scaled(2.0 * GRAVITY)) for h in heights]
-        return [v.scaled(1.0 / speed) for v in up], REBOUND_HEIGHT, True
+        return [v.scaled(1.0 / speed) for v in up], words.REBOUND_HEIGHT, True
     if fallen and speeds:
         down = math.sqrt(2.0 * GRAVITY * fallen)
-        return [v.scaled(1.0 / down) for v in speeds], REBOUND_SPEED, True
+        return [v.scaled(1.0 / down) for v in speeds], words.REBOUND_SPEED, True
     return found.get("restitution", []), "restitution", False
 
 
@@ -82,9 +74,9 @@ def scatter_of(trials: Sequence[tuple[Mapping[str, Measured], Readings]]) -> dic
     Pooled over the trials and widened for how few they are, as Student's distribution is. Several
     readings of one mark say nothing of the next one.
     """
-    rows = Counter(tuple(n in s and s[n].value for n in APPROACHES) for s, _ in trials)
+    rows = Counter(tuple(n in s and s[n].value for n in words.APPROACHES) for s, _ in trials)
     found = {}
-    for name in {n for _, readings in trials for n in readings} - {*DENTS, *CONDITIONS}:
+    for name in {n for _, readings in trials for n in readings} - {*words.DENTS, *CONDITIONS}:
         each = [readings[name] for _, readings in trials if name in readings]
         values = [np.array([v.value for v in several]) for several in each]
         freedom = sum(v.size - 1 for v in values)
@@ -99,19 +91,17 @@ def naming_of(
     rows: Sequence[Sequence[str]], taken: Sequence[int], columns: Sequence[SheetColumn]
 ) -> SheetColumn | None:
     """Return the column that names the rows that are taken, each otherwise; None without one."""
-    places = {k: rows[k - 1] for k in taken}
     for column in columns:
-        cells = [row[column.place] for row in places.values() if column.place < len(row)]
-        names = {cell.casefold() for cell in cells if names_a_file(cell)}
-        if column.kind.name == "trial" and len(names) == len(places):
+        cells = [rows[k - 1][column.place].casefold() for k in taken]
+        if column.kind.name == "trial" and len(set(filter(names_a_file, cells))) == len(taken):
             return column
     return None
 
 
 def note_of(row: Sequence[str], columns: Sequence[SheetColumn], naming: SheetColumn | None) -> str:
     """Return what stands beside a trial's numbers: remarks, who measured, other names of it."""
-    texts = [(c, row[c.place]) for c in columns if c.kind.quantity == "text" and c is not naming
-             and c.place < len(row) and row[c.place]]  # fmt: skip
+    texts = [(c, row[c.place]) for c in columns
+             if c.kind.quantity == "text" and c is not naming and row[c.place]]  # fmt: skip
     return "; ".join(t if c.kind.name == "note" else f"{c.header} {t}" for c, t in texts)
 
 
@@ -120,22 +110,22 @@ def became(
     striker: Mapping[str, Measured], naming: SheetColumn | None,
 ) -> str:  # fmt: skip
     """Return what became of a column, in words, beside those of the sheet."""
-    name, back = column.kind.name, {c.kind.name for c in columns if c.taken} & {*REBOUNDS}
-    words = {
-        REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
-        REBOUND_SPEED: "restitution, over the speed of approach",
-        "trial": "in the notes of the trials", "person": "in the notes of the trials",
+    name, back = column.kind.name, {c.kind.name for c in columns if c.taken} & {*words.REBOUNDS}
+    usual = {
+        words.REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
+        words.REBOUND_SPEED: "restitution, over the speed of approach",
+        **dict.fromkeys(("trial", "person", "ball"), "in the notes of the trials"),
     }  # fmt: skip
-    told = words.get(name, name)
+    told = usual.get(name, name)
     if column is naming:
         told = "names of the trials"
-    elif name in BODY:
-        key = "mass_kg" if name == BALL_MASS else "tip_radius_m"
+    elif name in words.BODY:
+        key = "mass_kg" if name == words.BALL_MASS else "tip_radius_m"
         told = f"{key} of the striker" if key in striker else "left out: not one ball's"
     elif name == "restitution" and back:
         told = "restitution, where heights or speeds give none"
     elif name in back and name not in used:
-        other = "speeds" if name == REBOUND_HEIGHT else "heights"
+        other = "speeds" if name == words.REBOUND_HEIGHT else "heights"
         told = f"restitution, where {other} give none"
     alike = sum(c.kind == column.kind and not c.spread for c in columns)
     if alike > 1 and column.kind.quantity != "text" and not column.spread:

@@ -27,32 +27,41 @@ def bare(text: str) -> str:
 
 _STROKES = str.maketrans("łŁ", "lL")
 
-HEIGHT = r"height|hoe?he|hauteur|altezza|altura|wysokosc|\bwys\b|高|\bh\b|\bht\b"
+HEIGHT = r"height|hoe?he|hauteur|\bhaut\b|altezza|altura|\balt\b|wysokosc|\bwys\b|高|\bh\b|\bht\b"
 DROPS = (
     r"drop|fall|release|chute|lacher|caduta|lancio|caida|lanzam|queda|lancam|abwurf|spad|zrzut|upad|"
-    r"upuszcz|下落|落下|跌落|落球"
+    r"upuszcz|initial|anfang|inizial|inicial|poczatk|下落|落下|跌落|落球|初始"
 )
 """Words of a drop height."""
 REBOUND = (
-    r"rebound|bounce|rue?ck(prall|sprung)|abprall|sprunghoe?he|rebond|remontee|rimbalz|rebote|"
-    r"ressalt|ricochet|odbici|odskok|回弹|反弹|跳ね返|はね返|反発"
+    r"rebound|bounce|return|rue?ck(prall|sprung|kehr)|abprall|sprunghoe?he|rebond|remontee|retour|"
+    r"rimbalz|ritorno|rebote|retorno|ressalt|repiqu|ricochet|odbici|\bodb\b|odskok|powrot|回弹|反弹|跳ね返|"
+    r"はね返|反発"
 )
-SPEED = r"speed|veloc|geschw|vitesse|predkosc|速度|速さ"
-_AFTER = rf"{REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues|\bapos\b|\bpo\b|后|後"
+SPEED = r"speed|\bvel(oc|\b)|geschw|\bvit(esse|\b)|predk|速度|速さ"
+_AFTER = (
+    rf"{REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues|\bapos\b|\bpo\b|后|後|"
+    r"salida|sortie|uscita|saida|出射"
+)
 _BEFORE = (
     r"impact|approach|(auf|an)prall|auftreff|stoss|choc|choque|urto|impatto|uderz|zderz|before|"
-    r"\bvor\b|avant|prima|antes|przed|冲击|碰撞|撞击|入射|衝突|衝撃"
+    r"incid|entrada|entree|ingresso|\bvor\b|avant|prima|antes|przed|冲击|碰撞|撞击|入射|衝突|衝撃"
 )
 _DENT = (
     r"\bdent|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
     r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|凹坑|压坑|圧痕|くぼみ|窪み|へこみ"
 )
 _SCAR = r"\bscar|scratch|kratzspur|kratzer|rayure|rasguno|arranh|graffio|zarysow|划痕|擦伤|擦過痕"
-_BALL = r"\b(ball|sphere|bille|sfer|bola|esfer|kul)|kugel|球|ボール"
-_DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|直径|(?<!半)径"
+BALL = r"\b(ball|sphere|bille|sfer|bola|esfer|kul)|kugel|球|ボール"
+NO_BALL = (
+    rf"{HEIGHT}|{DROPS}|radius|rayon|raggio|radio|raio|promien|半径|plate|target|thick|platte|dick|blech|"
+    r"plaque|epais|tole|piastra|lastra|spess|placa|chapa|espes|plyt|grub|板|厚"
+)
+"""Of lengths and masses in a line above that are not a ball's diameter or mass."""
+_DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|\bsr\b|直径|(?<!半)径"
 _WIDTH = r"wid|breit|largeur|largh|ancho|largura|szerok|宽|幅"
 _LENGTH = r"length|laenge|lange|longueur|lunghezza|longitud|comprimento|dlugosc|长|長さ"
-_DEPTH = r"depth|tief|profond|profund|glebok|深"
+_DEPTH = r"depth|tief|profond|profund|\bprof\b|glebok|深"
 _SINK = r"indent|eindring|penetr|press"
 _MASS = r"mass|masa|weight|gewicht|poids|peso|ciezar|质量|質量|重量"
 _BLOW = r"contact|kontakt|stoss|impact|beruhr|contatto|contat|zderz|uderz|接触|碰撞|衝突"
@@ -62,15 +71,16 @@ _FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
 _SPIN = r"\bspin\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
 
 MEANS = (
-    r"mean|average|avg|median\w*|mittel\w*|mw|moyenne?|moy|media|promedio|srednia|平均[値值]?|均值"
+    r"mean|average|avg|median\w*|mittel\w*|durchschn\w*|mw|moyenne?|moy|media|promedio|prom|"
+    r"srednia|d?sr|平均[値值]?|均值"
 )
 SPREADS = (
     r"stdev\w*|(std|st|stand\w*)\.?[- ]?(dev|abw)\w*|s\.?d|std|ecart[- ]?types?|"
-    r"(desv|dev|odch)\w*\.? ?(est|pad|tip|st|stand)\w*|desviacion|deviazione|streuung|"
+    r"(desv|dev|odch)\w*\.?[- ]?(est|pad|tip|st|stand)\w*|desviacion|deviazione|streuung|"
     r"标准偏?差|標準偏差"
 )
 ERRORS = (
-    r"sem|sigma|σ|error|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre|"
+    r"sem|sigma|σ|error|unc|inc|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre|"
     r"incerteza|niepewnosc|不确定度|误差|不確かさ|誤差"
 )
 EXTREMES = (
@@ -99,7 +109,7 @@ DENTS = ("dent_diameter_m", "permanent_depth_m", "scar_width_m", "scar_length_m"
 class SheetKind(NamedTuple):
     """What a column may become, and the words that say so.
 
-    `name` is as in trials.csv, or one of `REBOUNDS`, `BODY`, `note`, `person`; `quantity` one of
+    `name` is as in trials.csv, or of `REBOUNDS`, `BODY`, `note`, `person`, `ball`; `quantity` of
     `UNITS`, or `text`. All of `parts` say it, in any order (the height of fall, the fall's height),
     or `also` alone, but not with `never`.
     """
@@ -113,7 +123,7 @@ class SheetKind(NamedTuple):
     def is_said(self, words: str) -> bool:
         """Whether the words of a header, as `bare` gives them, say this."""
         whole = all(_compiled(part).search(words) for part in self.parts)
-        return (whole or _found(self.also, words)) and not _found(self.never, words)
+        return (whole or has(self.also, words)) and not has(self.never, words)
 
     @property
     def said(self) -> str:
@@ -121,7 +131,18 @@ class SheetKind(NamedTuple):
         return _UNIT_AT_END.sub("", self.name).replace("_", " ")
 
 
-_UNIT_AT_END = re.compile("_(m|s|m_s|N|K|deg|rad_s|per_s)$")
+_ENDINGS = {
+    "_per_s": "number", "_rad_s": "spin", "_m_s": "speed", "_m": "length", "_s": "time",
+    "_N": "force", "_deg": "angle", "_K": "temperature",
+}  # fmt: skip
+_UNIT_AT_END = re.compile(f"({'|'.join(_ENDINGS)})$")
+
+
+def plain_kind(column: str) -> SheetKind:
+    """Return what a column of trials.csv is, said by its own name in words."""
+    quantity = next((q for end, q in _ENDINGS.items() if column.endswith(end)), "number")
+    words = _UNIT_AT_END.sub("", column).replace("_", " ")
+    return SheetKind(column, quantity, (f"^{words}$",))
 
 
 @cache
@@ -129,7 +150,8 @@ def _compiled(pattern: str) -> re.Pattern[str]:
     return re.compile(letters(pattern))
 
 
-def _found(pattern: str, words: str) -> bool:
+def has(pattern: str, words: str) -> bool:
+    """Whether words, as `bare` gives them, hold one of a pattern; none is in an empty one."""
     return bool(pattern) and _compiled(pattern).search(words) is not None
 
 
@@ -137,12 +159,16 @@ def _found(pattern: str, words: str) -> bool:
 KINDS = (
     SheetKind("note", "text",
         (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|bemerk|kommentar|komentarz|anmerk|"
-         r"remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|备注|说明|備考|コメント|メモ",)),
+         r"remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|记录$|备注|说明|備考|コメント|メモ",)),
     SheetKind("person", "text",
-        (r"operator|observer|experimenter|student|(measured|tested|done) by|prue?fer|bediener|"
-         r"bearbeiter|operateur|operatrice|operatore|operari|operador|wykonal|badajac|"
+        (r"operator|observer|experimenter|student|te[ck]hni[ck]|tecnic|"
+         r"(measured|tested|done) by|prue?fer|bediener|bearbeiter|operateur|operatrice|operatore|"
+         r"operari|operador|wykonal|badajac|"
          r"操作[员者]|试验员|测试人|測定者|担当|試験者",)),
-    SheetKind("temperature_K", "temperature", ("temperatur|温度|室温",), r"^t$"),
+    SheetKind("ball", "text",
+        (r"^(ball|striker|indenter|projectile|kugel|bille|bola|esfera|sfera|kul[ak]a?|钢球|鋼球|球)"
+         r"( (type|material|no|nr|id))?\.?$",)),
+    SheetKind("temperature_K", "temperature", (r"temperatur|\btemp\b|温度|室温",), r"^t$"),
     SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)",),
         never=f"{REBOUND}|contact|kontakt|tilt|neigung"),
     SheetKind("restitution", "number",
@@ -151,13 +177,13 @@ KINDS = (
     SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
     SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
         never="drop height|fallhoe?he"),
-    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb)$",
+    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb|r|rue?ck)$",
         rf"{ALONG}|before|\bvor\b|avant|prima|antes|przed|前"),
     SheetKind("drop_height_m", "length", (DROPS, HEIGHT),
         "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
     SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
-        "^(v( ?n)?|v ?in|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|predkosc|"
-        "速度)$", ALONG),
+        "^(v( ?n)?|v ?(in?|imp|auf)|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|"
+        "predkosc|速度)$", ALONG),
     SheetKind("dent_diameter_m", "length", (_DENT, rf"{_DIAMETER}|dm\b|{_WIDTH}|\bd ?\d?$")),
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
@@ -165,32 +191,26 @@ KINDS = (
     SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent", _DEPTH),
         "eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
-    SheetKind("contact_time_s", "time", (_BLOW, _TIME), "duree|durata|duracion|duracao",
+    SheetKind("contact_time_s", "time", (_BLOW, _TIME), "duree|durata|duracion|duracao|^t ?c$",
         rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}"),
-    SheetKind("peak_force_N", "force", (_MOST, _FORCE)),
+    SheetKind("peak_force_N", "force", (_MOST, _FORCE), "^f ?(max|peak)$"),
     SheetKind(LOAD, "force",
         (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|"
          "(test|applied) (force|load)|force appliquee|fuerza aplicada|forza applicata|"
          "forca aplicada|prue?f(kraft|last)|试验力|試験力",)),
-    SheetKind(BALL_DIAMETER, "length", (_BALL, _DIAMETER)),
-    SheetKind(BALL_MASS, "mass", (_BALL, _MASS)),
+    SheetKind(BALL_DIAMETER, "length", (BALL, _DIAMETER)),
+    SheetKind(BALL_MASS, "mass", (BALL, _MASS), "^(mass[ae]?|masa|质量|質量)$"),
     SheetKind("trial", "text",
-        (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuch|messung|probe|shot|run|id|"
-         r"drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|probeta|ensaio|"
-         r"medicao|amostra|proba|probka|pomiar|lp|lfd)\b|^drop$|^n°|"
+        (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"
+         r"sample|specimen|drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|"
+         r"probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd)\b|^drop$|^n°|"
          "编号|序号|番号|试样|試料",)),
-    *(SheetKind(name, quantity, (f"^{words}$",)) for name, quantity, words in (
-        ("approach_tangential_m_s", "speed", "approach tangential"),
-        ("approach_spin_rad_s", "spin", "approach spin"),
-        ("tangential_rebound_m_s", "speed", "tangential rebound"),
-        ("friction_impulse_ratio", "number", "friction impulse ratio"),
-        ("sliding_length_m", "length", "sliding length"),
-        ("scar_excess_m", "length", "scar excess"),
-        ("press_depth_m", "length", "press depth"),
-        ("recovered_depth_m", "length", "recovered depth"),
-        ("order", "number", "order"),
+    *map(plain_kind, (
+        "approach_tangential_m_s", "approach_spin_rad_s", "tangential_rebound_m_s",
+        "friction_impulse_ratio", "sliding_length_m", "scar_excess_m", "press_depth_m",
+        "recovered_depth_m", "order",
     )),
 )  # fmt: skip
 
-UNDERSTOOD = ", ".join(kind.said for kind in KINDS if kind.name != "person")
+UNDERSTOOD = ", ".join(kind.said for kind in KINDS if kind.name not in ("person", "ball"))
 """Names that a header may have, for people."""
