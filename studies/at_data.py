@@ -47,12 +47,7 @@ LEADING = {
 class Drawn(NamedTuple):
     """A draw from a posterior, and recordings that it makes.
 
-    Parameters
-    ----------
-    place, z
-        (axes,) places in the priors and (n_z,) unknowns.
-    value
-        (m,) cells.
+    `place`, `z`: (axes,) places in the priors and (n_z,) unknowns; `value`: (m,) cells.
     """
 
     place: Array
@@ -63,12 +58,7 @@ class Drawn(NamedTuple):
 def fitted(simulator: Simulator, leading: Fit) -> Fit:
     """Fit an explanation as a diagnosis does, a pair from where it leads.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    leading
-        The explanation's fit to the set itself.
+    `leading`: the explanation's fit to the set itself.
     """
     base = fit(simulator, ())
     screened = [screen(simulator, base, m) for m in leading.mechanisms]
@@ -147,14 +137,8 @@ def ranks(simulator: Simulator, found: Fit, rng: np.random.Generator) -> dict[st
 def lines(out: Path, draws: int, sets: Mapping[str, tuple[str, ...]]) -> Iterator[dict[str, Any]]:
     """Go on with the draws at each set where a file of lines stopped; yield each line.
 
-    Parameters
-    ----------
-    out
-        A line of JSON for each draw: `set`, `mechanism`, `draw`, `shares`.
-    draws
-        At each set.
-    sets
-        Of `LEADING`.
+    `out`: a line of JSON for each draw: `set`, `mechanism`, `draw`, `shares`; `draws`: at each set;
+    `sets`: of `LEADING`.
     """
     known = {(x["set"], x["draw"]) for x in read_ranks(out)}
     for name, mechanisms in sets.items():

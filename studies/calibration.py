@@ -53,14 +53,7 @@ STRENGTH = "target.Sy_Pa"
 def ranks(simulator: Simulator, name: str, rng: np.random.Generator) -> dict[str, float]:
     """Return the share of the posterior below the truth, for one draw, by parameter.
 
-    Parameters
-    ----------
-    simulator
-        Of the set whose bench it is.
-    name
-        Of the mechanism.
-    rng
-        Of the draw.
+    `simulator`: of the set whose bench it is; `name`: of the mechanism; `rng`: of the draw.
     """
     problem = simulator.problem
     chosen = next(m for m in MECHANISMS if m.name == name)
@@ -82,14 +75,8 @@ def ranks(simulator: Simulator, name: str, rng: np.random.Generator) -> dict[str
 def shares(problem: Problem, found: Fit, place: Array, z: Array) -> dict[str, float]:
     """Return the share of a posterior below the truth, by parameter.
 
-    Parameters
-    ----------
-    problem
-        What was fitted.
-    found
-        Its fit.
-    place, z
-        The truth: (axes,) places in the priors, (n_z,) unknowns.
+    `problem`: what was fitted; `found`: its fit; `place`, `z`: the truth: (axes,) places in the
+    priors, (n_z,) unknowns.
     """
     below = {}
     for k, label in enumerate(found.grid.labels):
@@ -108,16 +95,8 @@ def drawn(
 ) -> Iterator[dict[str, Any]]:
     """Go on with the draws of each mechanism where a file of lines stopped; yield each line.
 
-    Parameters
-    ----------
-    folder
-        Part `open` of the challenge.
-    out
-        A line of JSON for each draw: `mechanism`, `draw`, `shares`.
-    draws
-        Of each mechanism.
-    only
-        These mechanisms; none for all.
+    `folder`: part `open` of the challenge; `out`: a line of JSON for each draw: `mechanism`,
+    `draw`, `shares`; `draws`: of each mechanism; `only`: these mechanisms; none for all.
     """
     known = {(x["mechanism"], x["draw"]) for x in read_ranks(out)}
     for name in only or BENCHES:

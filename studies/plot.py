@@ -52,16 +52,8 @@ that often coincide with another are broken."""
 class Picture:
     """One redrawn figure.
 
-    Parameters
-    ----------
-    number
-        The thesis's figure number, or a name of our own.
-    title
-        What it shows.
-    made
-        The figure.
-    note
-        One or two sentences: agrees, differs by how much, why.
+    `number`: the thesis's figure number, or a name of our own; `title`: what it shows; `made`: the
+    figure; `note`: one or two sentences: agrees, differs by how much, why.
     """
 
     number: str
@@ -83,18 +75,8 @@ class Picture:
 class Table:
     """One table of the thesis with our numbers.
 
-    Parameters
-    ----------
-    number
-        The thesis's table number.
-    title
-        What it shows.
-    header
-        Names of the columns, with units.
-    rows
-        Cells as text.
-    note
-        Agrees, differs by how much, why.
+    `number`: the thesis's table number; `title`: what it shows; `header`: names of the columns,
+    with units; `rows`: cells as text; `note`: agrees, differs by how much, why.
     """
 
     number: str

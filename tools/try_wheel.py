@@ -34,14 +34,8 @@ EXTRAS = "video,mocap,surface,tables"
 class Use(NamedTuple):
     """One use of a command in the empty environment.
 
-    Parameters
-    ----------
-    command
-        What follows `dentscope`, words separated by blanks.
-    says
-        Part of what it prints, on either stream.
-    code
-        Exit code.
+    `command`: what follows `dentscope`, words separated by blanks; `says`: part of what it prints,
+    on either stream; `code`: exit code.
     """
 
     command: str

@@ -28,10 +28,7 @@ alike the first is shown. Made by `dentscope campaign reproduction`.
 def write(source: Path, to: Path) -> list[Trend]:
     """Test the claims on a run or a data set and write the report.
 
-    Raises
-    ------
-    InputError
-        The file is missing or damaged.
+    Raises `InputError`: the file is missing or damaged.
     """
     records = [r for r in read_curves(source) if r.case.pair.perfectly_plastic]
     found = trends(records)

@@ -26,16 +26,10 @@ Values = tuple[float, float, float, float]
 class Sweep:
     """One case of Table 2.1 at DEPTH, over the strength ratios that were solved.
 
-    Parameters
-    ----------
-    number
-        Of the case, 1 to 5.
-    ratio
-        Sy*, increasing, shape (n,).
-    share, radius, pressure, force
-        delta_s*, a/R, p/Sy_min, F/(E' R^2), shape (n,).
-    records
-        What they were read from.
+    - `number`: of the case, 1 to 5.
+    - `ratio`: Sy*, increasing, shape (n,).
+    - `share`, `radius`, `pressure`, `force`: delta_s*, a/R, p/Sy_min, F/(E' R^2), shape (n,).
+    - `records`: what they were read from.
     """
 
     number: int

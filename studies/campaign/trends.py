@@ -27,14 +27,8 @@ Findings = dict[str, Finding]
 class Trend:
     """One claim of the text and what the finite elements say to it.
 
-    Parameters
-    ----------
-    section
-        Of the thesis.
-    claim
-        What the text says, with the tolerance that it is tested with.
-    findings
-        For each case or pair: whether it holds, and the number.
+    `section`: of the thesis; `claim`: what the text says, with the tolerance that it is tested
+    with; `findings`: for each case or pair: whether it holds, and the number.
     """
 
     section: str

@@ -28,17 +28,10 @@ Odds = dict[str, float]
 def read_answers(path: Path, sets: Sequence[str]) -> dict[str, Odds]:
     """Return the probabilities of every set by name, their sum 1.
 
-    Parameters
-    ----------
-    path
-        Table with the columns set, name, probability; a pair of mechanisms is `a+b`.
-    sets
-        Names of the sets that have to be answered.
+    `path`: table with the columns set, name, probability; a pair of mechanisms is `a+b`; `sets`:
+    names of the sets that have to be answered.
 
-    Raises
-    ------
-    InputErrors
-        One line for each mistake.
+    Raises `InputErrors`: one line for each mistake.
     """
     problems = Problems(str(path))
     table = read_text_table(path, COLUMNS, problems)

@@ -37,16 +37,10 @@ def seals() -> dict[str, dict[str, Any]]:
 def get(folder: Path) -> dict[str, int]:
     """Write the sets that ship below a folder; return how many each part has.
 
-    Parameters
-    ----------
-    folder
-        Made if missing; receives `open/sets`, `open/truths`, `sealed/sets`, the seals and the
-        names that an answer may have.
+    `folder`: made if missing; receives `open/sets`, `open/truths`, `sealed/sets`, the seals and the
+    names that an answer may have.
 
-    Raises
-    ------
-    InputError
-        A part is there already, or an archive is not what was published.
+    Raises `InputError`: a part is there already, or an archive is not what was published.
     """
     for part in PARTS:
         if (folder / part).exists():
@@ -82,10 +76,7 @@ def get(folder: Path) -> dict[str, int]:
 def sets_of(folder: Path) -> list[str]:
     """Return the names of the sets of a part.
 
-    Raises
-    ------
-    InputError
-        There are none.
+    Raises `InputError`: there are none.
     """
     sets = folder / "sets"
     names = sorted(p.name for p in sets.iterdir() if p.is_dir()) if sets.is_dir() else []
@@ -99,19 +90,10 @@ def truths_of(
 ) -> dict[str, tuple[str, ...]]:
     """Return the true names of each set; nothing where the truths are sealed.
 
-    Parameters
-    ----------
-    folder
-        A part; truths may lie in `folder/truths`, a file each.
-    sets
-        Names of the sets.
-    opened
-        File of the truths of sealed sets: a record by name.
+    `folder`: a part; truths may lie in `folder/truths`, a file each; `sets`: names of the sets;
+    `opened`: file of the truths of sealed sets: a record by name.
 
-    Raises
-    ------
-    InputError
-        A truth is missing, or is not the one that was sealed.
+    Raises `InputError`: a truth is missing, or is not the one that was sealed.
     """
     if opened is not None:
         records = read_json(opened, most=_MOST, allowed=_TRUTHS)

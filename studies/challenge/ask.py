@@ -45,16 +45,10 @@ _FIRST = 24  # trials that a set begins with: two hours of five minutes
 def deal(folder: Path, judge: Path, count: int, *, seed: int | None = None) -> list[str]:
     """Write sets that answer; return their names.
 
-    Parameters
-    ----------
-    folder
-        New; receives `sets` and `names.txt`.
-    judge
-        New; receives the secret, and later what was bought.
-    count
-        How many sets.
-    seed
-        For the same sets again; a secret one of 128 bits if left out.
+    - `folder`: new; receives `sets` and `names.txt`.
+    - `judge`: new; receives the secret, and later what was bought.
+    - `count`: how many sets.
+    - `seed`: for the same sets again; a secret one of 128 bits if left out.
     """
     for place in (folder, judge):
         if place.exists():
@@ -106,20 +100,12 @@ def _rig(truth: Truth) -> str:
 def ask(folder: Path, judge: Path, name: str, rows: Path) -> tuple[list[list[str]], int]:
     """Add what trials show to a set; return their rows with a header, and how many are left.
 
-    Parameters
-    ----------
-    folder, judge
-        As dealt.
-    name
-        Of the set.
-    rows
-        Table with the columns `striker` and `impact_speed_m_s`, or `load_N` for a press;
-        `angle_deg` (90) and `temperature_K` (293) may stand beside them.
+    - `folder`, `judge`: as dealt.
+    - `name`: of the set.
+    - `rows`: table with the columns `striker` and `impact_speed_m_s`, or `load_N` for a press;
+      `angle_deg` (90) and `temperature_K` (293) may stand beside them.
 
-    Raises
-    ------
-    InputErrors
-        Rows that do not fit, or too many; nothing is bought then.
+    Raises `InputErrors`: rows that do not fit, or too many; nothing is bought then.
     """
     kept = _kept(judge)
     if name not in kept:

@@ -19,12 +19,7 @@ ANSWERED = {DIAGNOSIS: "diagnosis.csv", "BIC, 3 % floor": "bic.csv"}
 def write_own(folder: Path, out: Path) -> None:
     """Write a file of answers for each of `ANSWERED`.
 
-    Parameters
-    ----------
-    folder
-        A part of the challenge with its peers.jsonl.
-    out
-        For the files.
+    `folder`: a part of the challenge with its peers.jsonl; `out`: for the files.
     """
     lines = sorted(read_lines(folder), key=lambda line: str(line["set"]))
     for who, name in ANSWERED.items():

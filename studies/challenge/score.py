@@ -68,12 +68,8 @@ def _said(lead: str, odds: Odds) -> dict[str, Any]:
 def scores(answers: Mapping[str, Odds], truths: Mapping[str, tuple[str, ...]]) -> list[Row]:
     """Return every score of a method.
 
-    Parameters
-    ----------
-    answers
-        Probabilities by set and name.
-    truths
-        Names of what is concealed by set: none, one, two, or the one that stands for all outside.
+    `answers`: probabilities by set and name; `truths`: names of what is concealed by set: none,
+    one, two, or the one that stands for all outside.
     """
     table = np.array(marks(answers, truths))
     column = {name: table[:, k] for k, name in enumerate(Mark._fields)}

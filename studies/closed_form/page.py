@@ -68,16 +68,11 @@ def judged_section(
 ) -> str:
     """Return the part of docs/closed-form.md on pairs that no fit has read.
 
-    Parameters
-    ----------
-    errors
-        Names of the laws in use, and their errors on these pairs.
-    names
-        Of the cases; those of a challenge carry the beginning of the checksum that drew them.
-    digest
-        Checksum of the coefficients in use.
-    within
-        Shares of the errors within one and two stated deviations, by law and quantity.
+    - `errors`: names of the laws in use, and their errors on these pairs.
+    - `names`: of the cases; those of a challenge carry the beginning of the checksum that drew
+      them.
+    - `digest`: checksum of the coefficients in use.
+    - `within`: shares of the errors within one and two stated deviations, by law and quantity.
     """
     drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
     about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"

@@ -55,21 +55,10 @@ Maker = Callable[..., None]
 def base(name: str, given: Mapping[str, float], *, raw: Path, folder: Path) -> None:
     """Write the set `name` into a folder that isn't there yet.
 
-    Parameters
-    ----------
-    name
-        A shipped set, or one of `MADE`.
-    given
-        Options of the latter.
-    raw
-        Folder of the fetched recordings.
-    folder
-        Of the set.
+    `name`: a shipped set, or one of `MADE`; `given`: options of the latter; `raw`: folder of the
+    fetched recordings; `folder`: of the set.
 
-    Raises
-    ------
-    FileNotFoundError
-        The raw files are not there.
+    Raises `FileNotFoundError`: the raw files are not there.
     """
     if name in MADE:
         source, make = MADE[name]

@@ -20,21 +20,11 @@ from .plan import Side
 def write_side(side: Side, made: Path, folder: Path) -> None:
     """Write the set of one side.
 
-    Parameters
-    ----------
-    side
-        What is done.
-    made
-        The base.
-    folder
-        Receives set.toml and trials.csv; must not be there.
+    `side`: what is done; `made`: the base; `folder`: receives set.toml and trials.csv; must not be
+    there.
 
-    Raises
-    ------
-    InputError
-        A key, column or row of the plan that the base doesn't have.
-    InputErrors
-        The set is no sound one then.
+    Raises `InputError`: a key, column or row of the plan that the base doesn't have. `InputErrors`:
+    the set is no sound one then.
     """
     folder.mkdir(parents=True)
     shutil.copyfile(made / "set.toml", folder / "set.toml")

@@ -37,12 +37,7 @@ _MARK = {True: "right", False: "missed"}
 def write_page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> None:
     """Write the page.
 
-    Parameters
-    ----------
-    pairs
-        The plan.
-    told
-        What was said, by pair and side.
+    `pairs`: the plan; `told`: what was said, by pair and side.
     """
     write_file(PAGE, page(pairs, told))
 

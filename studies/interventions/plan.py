@@ -70,9 +70,6 @@ class Plan(InputTable):
 def read_plan(path: Path = PLAN) -> tuple[Pair, ...]:
     """Read the pairs.
 
-    Raises
-    ------
-    InputErrors
-        One line for each mistake.
+    Raises `InputErrors`: one line for each mistake.
     """
     return read_model(path, Plan).pair

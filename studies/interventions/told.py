@@ -83,18 +83,11 @@ def ask(
 ) -> Iterator[Told]:
     """Make both sets of each pair, and diagnose those that this tool was not asked about yet.
 
-    Parameters
-    ----------
-    pairs
-        The plan.
-    raw
-        Folder of the fetched recordings; pairs whose raw files are not there are left out.
-    out
-        Folder of the sets and verdicts.
-    record
-        File of what was said, brought up to date after every set.
-    limit_s
-        Longest time of one diagnosis [s].
+    - `pairs`: the plan.
+    - `raw`: folder of the fetched recordings; pairs whose raw files are not there are left out.
+    - `out`: folder of the sets and verdicts.
+    - `record`: file of what was said, brought up to date after every set.
+    - `limit_s`: longest time of one diagnosis [s].
     """
     tree = tree_hash(ROOT)[:_SHORT]
     kept = outcomes(record)

@@ -48,10 +48,8 @@ class Contact:
 class Motion:
     """Equations of motion of one scene: Coulomb's friction with or without a spring, a support.
 
-    Raises
-    ------
-    ValueError
-        The scene ploughs, damps, radiates or stands on a plate, or its friction falls with speed.
+    Raises `ValueError`: the scene ploughs, damps, radiates or stands on a plate, or its friction
+    falls with speed.
     """
 
     def __init__(self, scene: Scene, a: Arrays) -> None:

@@ -44,10 +44,7 @@ def asked_of(folder: Path) -> list[Asked]:
 
     The order of a run is random. Sets with a wrong mass or strength are left out.
 
-    Raises
-    ------
-    InputError
-        A seal of a run does not hold, or the folder holds no sets.
+    Raises `InputError`: a seal of a run does not hold, or the folder holds no sets.
     """
     ledger = Ledger(folder / "ledger.jsonl")
     if not ledger.path.exists():
@@ -84,16 +81,10 @@ def compared(
 ) -> Generator[tuple[dict[str, Any], int, int]]:
     """Go on with a folder where it stopped; yield each set's line, how many are done, of how many.
 
-    Parameters
-    ----------
-    folder
-        With sets/ and truths/, or a run.
-    workers
-        Fit and diagnose.
-    at_once
-        How many sets are under way at a time.
-    most
-        Number of sets, in the folder's order, those of earlier calls among them.
+    - `folder`: with sets/ and truths/, or a run.
+    - `workers`: fit and diagnose.
+    - `at_once`: how many sets are under way at a time.
+    - `most`: number of sets, in the folder's order, those of earlier calls among them.
     """
     asked = asked_of(folder)[:most]
     source = _source()

@@ -53,18 +53,11 @@ class Tried(NamedTuple):
 class Fitted:
     """All explanations of one set.
 
-    Parameters
-    ----------
-    cells
-        Their number, m.
-    tried
-        The baseline, then every mechanism that arithmetic does not rule out.
-    pairs
-        The best single with each other mechanism.
-    white
-        (m,) whitened residual of the baseline, with the floor.
-    columns
-        Mechanism to its whitened effect (m,) where it fits best.
+    - `cells`: their number, m.
+    - `tried`: the baseline, then every mechanism that arithmetic does not rule out.
+    - `pairs`: the best single with each other mechanism.
+    - `white`: (m,) whitened residual of the baseline, with the floor.
+    - `columns`: mechanism to its whitened effect (m,) where it fits best.
     """
 
     cells: int

@@ -182,12 +182,7 @@ def sets_of(folders: Sequence[Path], *, sheets: bool) -> tuple[list[Features], l
 def judged(made: Sequence[Path], on: Sequence[Path], *, sheets: bool = False) -> Judged:
     """Train on some folders, judge on others.
 
-    Parameters
-    ----------
-    made, on
-        Folders with sets/ and truths/.
-    sheets
-        Whether the readings are kept from it.
+    `made`, `on`: folders with sets/ and truths/; `sheets`: whether the readings are kept from it.
     """
     (seen, labels), (asked, truths) = (sets_of(f, sheets=sheets) for f in (made, on))
     turn = DictVectorizer(sparse=False)

@@ -53,14 +53,8 @@ Costs = Callable[[Fitted], Mapping[str, Cost]]
 class Rule:
     """The explanation of least cost, each mechanism for a margin, unless it does not fit.
 
-    Parameters
-    ----------
-    costs
-        Of every explanation.
-    margin
-        By how much a name must win over the baseline, and a second mechanism over one.
-    pairs
-        Whether it fits pairs.
+    `costs`: of every explanation; `margin`: by how much a name must win over the baseline, and a
+    second mechanism over one; `pairs`: whether it fits pairs.
     """
 
     costs: Costs

@@ -36,14 +36,7 @@ class Answer(NamedTuple):
 def answer(folder: Path, out: Path, limit_s: float) -> Answer:
     """Run `dentscope diagnose FOLDER --out OUT` in a process of its own.
 
-    Parameters
-    ----------
-    folder
-        Recording set.
-    out
-        For verdict.json and the report.
-    limit_s
-        Longest time [s].
+    `folder`: recording set; `out`: for verdict.json and the report; `limit_s`: longest time [s].
     """
     theirs, ours = _server().Pipe(duplex=False)
     process = _server().Process(target=_diagnose, args=(folder, out, ours))

@@ -20,10 +20,7 @@ def inclusion(cases: Iterable[Case]) -> list[tuple[float, float, float, int, int
 
     Every mechanism that a set could show counts once; those of no weight at all are left out.
 
-    Returns
-    -------
-    list
-        (low, high, mean stated, acting, cases) of each bin with cases.
+    Returned: (low, high, mean stated, acting, cases) of each bin with cases.
     """
     rows = []
     for case in cases:
@@ -65,10 +62,7 @@ def coverage_by_class(cases: Iterable[Case]) -> dict[str, tuple[int, int]]:
 def calibration(cases: list[Case]) -> list[tuple[float, float, int, int]]:
     """Stated probability of the best explanation against how often it was right, in bins.
 
-    Returns
-    -------
-    list
-        (low, high, right, cases) of each bin with cases.
+    Returned: (low, high, right, cases) of each bin with cases.
     """
     edges = [0.0, 0.5, 0.7, 0.9, 0.97, 1.0]
     counts = [[0, 0] for _ in edges[1:]]

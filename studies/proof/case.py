@@ -79,10 +79,7 @@ def open_run(run: Path) -> list[Case]:
     Sets that two processes sealed are left out, and their truths stay closed; sealed again after
     it was opened, a set is a broken seal.
 
-    Raises
-    ------
-    SealBroken
-        A seal does not hold; nothing is scored then.
+    Raises `SealBroken`: a seal does not hold; nothing is scored then.
     """
     ledger = Ledger(run / "ledger.jsonl")
     verdicts, opened = ledger.of("verdict"), ledger.of("opened")

@@ -80,20 +80,12 @@ def summary(
 ) -> dict[str, Any]:  # fmt: skip
     """What is kept of a run.
 
-    Parameters
-    ----------
-    cases
-        The opened cases.
-    which, tree, date
-        List, tree hash and day of the run.
-    total
-        Number of sets on the list.
-    commit
-        Of the tool that was judged, if known.
-    peers
-        What simple rules said of the same sets, from `rivals.read_lines`.
-    plan
-        SHA-256 of the plan that was sealed before the first set.
+    - `cases`: the opened cases.
+    - `which`, `tree`, `date`: list, tree hash and day of the run.
+    - `total`: number of sets on the list.
+    - `commit`: of the tool that was judged, if known.
+    - `peers`: what simple rules said of the same sets, from `rivals.read_lines`.
+    - `plan`: SHA-256 of the plan that was sealed before the first set.
     """
     wrong = [c for c in cases if _wrong(c)]
     return {

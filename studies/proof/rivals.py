@@ -110,12 +110,9 @@ def _probabilities(
 def compare(lines: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Return the scores of the diagnosis and of every rule, and what separates them.
 
-    Returns
-    -------
-    dict
-        `sets`, `failed`, `nulls`, `outside` counts; `rows`, each with `name`, the sums of `Mark`'s
-        counts, means of `ln_p`, `brier`, `said`, `seconds`, `ranges` of what is said, and of the
-        rules `front_less`, `ln_p_less` (diagnosis less rule, 95 % interval) and `mcnemar`.
+    Returned: `sets`, `failed`, `nulls`, `outside` counts; `rows`, each with `name`, the sums of
+    `Mark`'s counts, means of `ln_p`, `brier`, `said`, `seconds`, `ranges` of what is said, and of
+    the rules `front_less`, `ln_p_less` (diagnosis less rule, 95 % interval) and `mcnemar`.
     """
     deciders = [DIAGNOSIS, *(k for k in lines[0]["said"] if k != DIAGNOSIS)] if lines else []
     marks = {d: np.array([mark_of(x, d) for x in lines]) for d in deciders}

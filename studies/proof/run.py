@@ -54,10 +54,7 @@ def draw_entry(tree: str, entry: Entry) -> Truth:
 def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
     """Draw one case, write its recordings and its salted truth.
 
-    Returns
-    -------
-    dict
-        The event that seals both.
+    Returned: the event that seals both.
     """
     truth = draw_entry(tree, entry)
     for place in ("sets", "truths", "verdicts"):
@@ -77,11 +74,8 @@ def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
 def diagnose(run: Path, name: str, limit_s: float) -> dict[str, Any]:
     """Diagnose one set in a process that sees only its recordings.
 
-    Returns
-    -------
-    dict
-        The event that seals what was said: `verdict` (hash, empty if there is none), `exit`,
-        `cpu_s`, `wall_s`, `message`.
+    Returned: the event that seals what was said: `verdict` (hash, empty if there is none), `exit`,
+    `cpu_s`, `wall_s`, `message`.
     """
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as place:
@@ -123,27 +117,16 @@ def carry_on(
 
     Only this process writes the ledger; a truth is sealed before its diagnosis is handed out.
 
-    Parameters
-    ----------
-    run
-        Folder of the run.
-    which
-        Name of the list: `full` or `small`.
-    workers
-        Draw and diagnose.
-    at_once
-        How many sets are under way at a time.
-    hours, most
-        When to stop: time [h], number of sets diagnosed now.
-    limit_s
-        Longest time of one diagnosis [s].
+    - `run`: folder of the run.
+    - `which`: name of the list: `full` or `small`.
+    - `workers`: draw and diagnose.
+    - `at_once`: how many sets are under way at a time.
+    - `hours`, `most`: when to stop: time [h], number of sets diagnosed now.
+    - `limit_s`: longest time of one diagnosis [s].
 
-    Raises
-    ------
-    ValueError
-        The source tree changed since the run began; a new run draws new truths.
-    InputError
-        The plan is not the one that the run began with; or another process goes on with it.
+    Raises `ValueError`: the source tree changed since the run began; a new run draws new truths.
+    `InputError`: the plan is not the one that the run began with; or another process goes on with
+    it.
     """
     tree = tree_hash(ROOT)
     with alone(run):
@@ -157,10 +140,7 @@ def carry_on(
 def alone(run: Path) -> Iterator[None]:
     """Keep a run for oneself: two processes would seal a set twice.
 
-    Raises
-    ------
-    InputError
-        Another process goes on with it.
+    Raises `InputError`: another process goes on with it.
     """
     with in_use(run) as before:
         if before:

@@ -50,10 +50,7 @@ _WORDS: dict[str, Callable[[str, Numbers], Numbers]] = {
 def comparable(effect: dict[str, Any]) -> Numbers:
     """True values of those parameters of the verdict that have one, SI or the verdict's unit.
 
-    Parameters
-    ----------
-    effect
-        Entry of a truth file: `name`, `form`, `numbers`.
+    `effect`: entry of a truth file: `name`, `form`, `numbers`.
     """
     find = _WORDS.get(effect["name"])
     if find is None or (effect["form"] == "meshed" and "C" not in effect["numbers"]):

@@ -23,18 +23,11 @@ def sample(
 ) -> Iterator[tuple[str, dict[str, object]]]:
     """Write `count` sets below `out`; yield the name and the truth of each.
 
-    Parameters
-    ----------
-    out
-        Folder; sets go to `out/sets`, truths to `out/truths`.
-    count
-        Number of sets.
-    kind
-        `null`, `single`, `pair` or `outside`; in turn if empty.
-    name
-        Effect of a single or of one outside the library; every one in turn if empty.
-    seed
-        Of the draw.
+    - `out`: folder; sets go to `out/sets`, truths to `out/truths`.
+    - `count`: number of sets.
+    - `kind`: `null`, `single`, `pair` or `outside`; in turn if empty.
+    - `name`: effect of a single or of one outside the library; every one in turn if empty.
+    - `seed`: of the draw.
     """
     (out / "truths").mkdir(parents=True, exist_ok=True)
     names = list(EFFECTS if kind == "single" else OUTSIDE)

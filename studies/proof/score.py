@@ -23,20 +23,10 @@ _ALARMS = ("missing-physics", "indistinguishable", "outside-library")
 class Score:
     """A share with its interval, or a number, beside its mark.
 
-    Parameters
-    ----------
-    name
-        In words.
-    hits, of
-        Counts; `of` is 0 for a plain number.
-    value
-        Share or number.
-    low, high
-        95 % interval (Clopper and Pearson); NaN for a plain number.
-    mark
-        In words.
-    state
-        `met`, `missed`, `not shown` or `no cases`.
+    - `hits`, `of`: counts; `of` is 0 for a plain number.
+    - `value`: share or number.
+    - `low`, `high`: 95 % interval (Clopper and Pearson); NaN for a plain number.
+    - `state`: `met`, `missed`, `not shown` or `no cases`.
     """
 
     name: str

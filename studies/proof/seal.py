@@ -62,10 +62,7 @@ class SealBroken(ValueError):
 class Ledger:
     """The chained list of events of one run.
 
-    Parameters
-    ----------
-    path
-        File of lines of JSON; made when the first event is written.
+    `path`: file of lines of JSON; made when the first event is written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,10 +71,7 @@ class Ledger:
     def events(self) -> list[dict[str, Any]]:
         """All events, the chain checked.
 
-        Raises
-        ------
-        SealBroken
-            A line does not fit the line before it.
+        Raises `SealBroken`: a line does not fit the line before it.
         """
         if not self.path.exists():
             return []
@@ -121,10 +115,7 @@ def sealed_twice(ledger: Ledger) -> set[str]:
 def check(ledger: Ledger, run: Path, name: str) -> None:
     """Check the seals of one set: truth and set before verdict, none changed since, none opened.
 
-    Raises
-    ------
-    SealBroken
-        Says which seal does not hold.
+    Raises `SealBroken`: says which seal does not hold.
     """
     order = [(e["event"], e.get("set")) for e in ledger.events()]
     places = {pair: i for i, pair in reversed(list(enumerate(order)))}

@@ -43,16 +43,8 @@ def kept(
 ) -> dict[str, Any]:
     """What is kept of a run: the comparison, and of every set its truth and what leads.
 
-    Parameters
-    ----------
-    cases
-        The opened sets.
-    lines
-        What the peers said of them.
-    plan, tree
-        SHA-256 of the plan and of the tool.
-    total
-        Sets of the list.
+    `cases`: the opened sets; `lines`: what the peers said of them; `plan`, `tree`: SHA-256 of the
+    plan and of the tool; `total`: sets of the list.
     """
     of = {c.name: c for c in cases}
     best = best_peer(compare(lines))["name"]

@@ -29,50 +29,29 @@ _EXPOSURES = 5
 class ClipTruth:
     """What is rendered; lengths in pixels, times in frames unless a unit is named.
 
-    Parameters
-    ----------
-    shape
-        `"rod"` or `"sphere"`.
-    rows, columns, frames
-        Size of the clip.
-    scale
-        Size of a pixel [m].
-    rate
-        Frames per second [1/s].
-    approach, rebound
-        Speeds of the tip before and after the contact [m/s].
-    contact_time
-        Duration of the contact [s]; within it the tip follows two quarters of a sine, slowed down
-        at first and then pushed up, so that its speed nowhere jumps.
-    half_width, tip_radius
-        Of the rod, or the ball's radius twice [pixel].
-    lean
-        Tilt of the rod, or of a ball's path [rad].
-    blur
-        Standard deviation of the optical blur [pixel].
-    exposure
-        Part of the frame's time in which the shutter is open.
-    noise
-        Standard deviation of the grey values.
-    dark, bright
-        Grey values of background and body.
-    uneven
-        Light falls off towards the edges by this part.
-    ball
-        What the path is, if it is that of a ball in air; its size and scale are those of the clip.
-    drift
-        Relative change of the scale from the flat to the highest point (bend, bow).
-    line_time
-        From one row to the next of a shutter that rolls down [s].
-    mirror
-        Brightness of the reflection in the flat, in that of the body.
-    blur_tilt
-        Relative growth of the blur from the upper to the lower edge.
-    flicker
-        Spread of the slope of the light over one exposure, from frame to frame.
-    dropped, glints
-        Share of frames in which the one before is shown again; in which something bright is in the
-        way.
+    - `shape`: `"rod"` or `"sphere"`.
+    - `rows`, `columns`, `frames`: size of the clip.
+    - `scale`: size of a pixel [m].
+    - `rate`: frames per second [1/s].
+    - `approach`, `rebound`: speeds of the tip before and after the contact [m/s].
+    - `contact_time`: duration of the contact [s]; within it the tip follows two quarters of a sine,
+      slowed down at first and then pushed up, so that its speed nowhere jumps.
+    - `half_width`, `tip_radius`: of the rod, or the ball's radius twice [pixel].
+    - `lean`: tilt of the rod, or of a ball's path [rad].
+    - `blur`: standard deviation of the optical blur [pixel].
+    - `exposure`: part of the frame's time in which the shutter is open.
+    - `noise`: standard deviation of the grey values.
+    - `dark`, `bright`: grey values of background and body.
+    - `uneven`: light falls off towards the edges by this part.
+    - `ball`: what the path is, if it is that of a ball in air; its size and scale are those of the
+      clip.
+    - `drift`: relative change of the scale from the flat to the highest point (bend, bow).
+    - `line_time`: from one row to the next of a shutter that rolls down [s].
+    - `mirror`: brightness of the reflection in the flat, in that of the body.
+    - `blur_tilt`: relative growth of the blur from the upper to the lower edge.
+    - `flicker`: spread of the slope of the light over one exposure, from frame to frame.
+    - `dropped`, `glints`: share of frames in which the one before is shown again; in which
+      something bright is in the way.
     """
 
     shape: str = "rod"

@@ -20,32 +20,22 @@ ROD_MARKERS = ((0.009, 0.0, 0.125), (-0.004, 0.008, 0.060), (0.002, -0.009, -0.0
 class MocapTruth:
     """What happens: a plane rigid-body impact of given restitution and impulse ratio.
 
-    Parameters
-    ----------
-    shape
-        `"rod"` or `"sphere"`.
-    markers
-        Places on the striker from its centre of mass [m].
-    length, tip_radius
-        Of the rod between the centres of its tips (0 for a sphere), and of the tip [m].
-    angle
-        Between axis and flat at the contact (rod) [rad].
-    normal, tangential, spin
-        Approach of the contact point, velocity of the centre along x [m/s], spin before [rad/s].
-    restitution, ratio
-        Of the contact point; tangential over normal impulse, positive along +x.
-    contact_time
-        During which the impulse acts evenly [s].
-    azimuth
-        Of the plane of motion about the vertical [rad].
-    rate, frames, touch
-        Frames per second, number of frames, instant of first touch [s].
-    noise
-        Standard deviation of each coordinate [m].
-    missing, gap
-        Part of the positions that are lost; frames in which the first marker is hidden.
-    mixed_up
-        Part of the frames in which one marker is found somewhere else.
+    - `shape`: `"rod"` or `"sphere"`.
+    - `markers`: places on the striker from its centre of mass [m].
+    - `length`, `tip_radius`: of the rod between the centres of its tips (0 for a sphere), and of
+      the tip [m].
+    - `angle`: between axis and flat at the contact (rod) [rad].
+    - `normal`, `tangential`, `spin`: approach of the contact point, velocity of the centre along x
+      [m/s], spin before [rad/s].
+    - `restitution`, `ratio`: of the contact point; tangential over normal impulse, positive along
+      +x.
+    - `contact_time`: during which the impulse acts evenly [s].
+    - `azimuth`: of the plane of motion about the vertical [rad].
+    - `rate`, `frames`, `touch`: frames per second, number of frames, instant of first touch [s].
+    - `noise`: standard deviation of each coordinate [m].
+    - `missing`, `gap`: part of the positions that are lost; frames in which the first marker is
+      hidden.
+    - `mixed_up`: part of the frames in which one marker is found somewhere else.
     """
 
     shape: str = "rod"

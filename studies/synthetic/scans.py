@@ -15,31 +15,19 @@ from ...reduce.scan.file import Scan
 class ScanTruth:
     """What is rendered; lengths in metres.
 
-    Parameters
-    ----------
-    depth, radius
-        Of the crater below the undisturbed surface.
-    flatness
-        κ of its floor d (1 - (1 - κ) x² - κ x⁶), x = r/radius: 0 a paraboloid, above 0 a flatter
-        floor and steeper walls.
-    sliding
-        Length of the straight part of a scar; 0 for a round crater.
-    direction
-        Of the scar [rad].
-    pile_up
-        Height of the rim.
-    tilt
-        (2,) slopes.
-    bow
-        Height of a paraboloid over the whole scan: drift or form.
-    roughness, correlation
-        Standard deviation of the surface's roughness and its correlation length.
-    noise
-        Standard deviation of the instrument.
-    blur
-        Standard deviation of the instrument's lateral blur.
-    spikes, holes
-        Parts of the points.
+    - `depth`, `radius`: of the crater below the undisturbed surface.
+    - `flatness`: κ of its floor d (1 - (1 - κ) x² - κ x⁶), x = r/radius: 0 a paraboloid, above 0 a
+      flatter floor and steeper walls.
+    - `sliding`: length of the straight part of a scar; 0 for a round crater.
+    - `direction`: of the scar [rad].
+    - `pile_up`: height of the rim.
+    - `tilt`: (2,) slopes.
+    - `bow`: height of a paraboloid over the whole scan: drift or form.
+    - `roughness`, `correlation`: standard deviation of the surface's roughness and its correlation
+      length.
+    - `noise`: standard deviation of the instrument.
+    - `blur`: standard deviation of the instrument's lateral blur.
+    - `spikes`, `holes`: parts of the points.
     """
 
     depth: float = 30e-6

@@ -21,22 +21,15 @@ _STEP = 2e-5
 class SoundTruth:
     """A ball that is dropped on a flat, and what is heard of it.
 
-    Parameters
-    ----------
-    diameter, density
-        Of the ball [m, kg/m³].
-    speed, restitution, power
-        Speed of the first impact [m/s]; restitution at 1 m/s, which falls as speed^-power.
-    contact_time
-        Of every contact [s].
-    slowest
-        Impacts below are not rendered [m/s].
-    knocks
-        Number of knocks that belong to no bounce.
-    noise, echo, gain
-        Standard deviation of the noise; loudness of the echo; above 1 the record is clipped.
-    seed
-        Of the noise, the knocks and the sound of a contact.
+    - `diameter`, `density`: of the ball [m, kg/m³].
+    - `speed`, `restitution`, `power`: speed of the first impact [m/s]; restitution at 1 m/s, which
+      falls as speed^-power.
+    - `contact_time`: of every contact [s].
+    - `slowest`: impacts below are not rendered [m/s].
+    - `knocks`: number of knocks that belong to no bounce.
+    - `noise`, `echo`, `gain`: standard deviation of the noise; loudness of the echo; above 1 the
+      record is clipped.
+    - `seed`: of the noise, the knocks and the sound of a contact.
     """
 
     diameter: float = 0.02

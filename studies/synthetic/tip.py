@@ -15,22 +15,13 @@ from .clips import ClipTruth, render
 class TipTruth:
     """What is photographed; lengths in pixels.
 
-    Parameters
-    ----------
-    shape
-        `"rod"` or `"sphere"`.
-    radius, half_width
-        Of the tip, of the rod.
-    lean
-        Of the rod [rad].
-    blur, noise
-        Standard deviation of the blur, of the grey values.
-    uneven
-        Part by which the light falls off towards the edges of the picture.
-    reflection
-        Grey values that a bright stripe along the body adds.
-    flat
-        Radius of a flat worn on the apex.
+    - `shape`: `"rod"` or `"sphere"`.
+    - `radius`, `half_width`: of the tip, of the rod.
+    - `lean`: of the rod [rad].
+    - `blur`, `noise`: standard deviation of the blur, of the grey values.
+    - `uneven`: part by which the light falls off towards the edges of the picture.
+    - `reflection`: grey values that a bright stripe along the body adds.
+    - `flat`: radius of a flat worn on the apex.
     """
 
     shape: str = "rod"

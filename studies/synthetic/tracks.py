@@ -27,33 +27,21 @@ _BALLS = ((2.7e-3, 0.04, 4e-4, 1.2e-3), (5.5e-3, 0.016, 5e-5, 3e-4), (0.045, 0.0
 class TrackTruth:
     """What happens and how it is seen; lengths in metres unless pixels are named.
 
-    Parameters
-    ----------
-    mass, diameter
-        Of the ball [kg, m].
-    drop, restitution, contact_time
-        Height of release, restitution of every bounce, duration of a contact [s].
-    held
-        Time before the release, in which the ball is held [s].
-    span
-        Length of the track [s].
-    rate, pixel
-        Frames per second, size of a pixel at the flat.
-    drift
-        Relative change of the scale from the flat to the height of release (bend, bow).
-    growth
-        Relative change of the scale over the track.
-    tilt, aside
-        Roll of the picture [rad], and speed to the side [m/s].
-    line_time
-        From one row to the next of a shutter that rolls down [s].
-    noise, blur
-        Spread of a position [pixel]; more of it for each pixel moved in a frame.
-    dropped, bad, lost
-        Share of frames that are missing, of positions that are something else's (in runs of one to
-        four), and of time stamps that are late by a frame from there on (0 or 1 in a track).
-    dip
-        By which a position falls within a diameter of the flat [pixel].
+    - `mass`, `diameter`: of the ball [kg, m].
+    - `drop`, `restitution`, `contact_time`: height of release, restitution of every bounce,
+      duration of a contact [s].
+    - `held`: time before the release, in which the ball is held [s].
+    - `span`: length of the track [s].
+    - `rate`, `pixel`: frames per second, size of a pixel at the flat.
+    - `drift`: relative change of the scale from the flat to the height of release (bend, bow).
+    - `growth`: relative change of the scale over the track.
+    - `tilt`, `aside`: roll of the picture [rad], and speed to the side [m/s].
+    - `line_time`: from one row to the next of a shutter that rolls down [s].
+    - `noise`, `blur`: spread of a position [pixel]; more of it for each pixel moved in a frame.
+    - `dropped`, `bad`, `lost`: share of frames that are missing, of positions that are something
+      else's (in runs of one to four), and of time stamps that are late by a frame from there on (0
+      or 1 in a track).
+    - `dip`: by which a position falls within a diameter of the flat [pixel].
     """
 
     mass: float = 2.7e-3

@@ -52,14 +52,7 @@ def answer(
 ) -> list[list[str]]:
     """Return rows of trials.csv with their header.
 
-    Parameters
-    ----------
-    truth
-        The set.
-    asked
-        What is asked, in the order of testing.
-    before
-        What was asked of it before.
+    `asked`: what is asked, in the order of testing; `before`: what was asked of it before.
     """
     rig, n = truth.rig, len(truth.rig.which)
     rng, settings = released(truth)

@@ -36,27 +36,17 @@ TOLERANCE = {
 class Rig:
     """Bodies and settings, a row a trial; SI.
 
-    Parameters
-    ----------
-    bench, flat, strikers
-        Kind of rig and its bodies.
-    which, angle, speed, temperature, load
-        (n,) striker's number, angle [rad], normal speed [m/s], temperature [K], load of a press
-        [N], 0 for a blow.
-    mu
-        Friction as stated.
-    noise
-        Column to (number, fraction): standard deviation as stated.
-    heights
-        Whether heights are stated, with an error that all trials of one height share.
-    gauge
-        Column to the stated standard deviation of a scale that its readings share.
-    curve
-        (2, k) plastic strain and stress over the strength, where the sheet has the metal's curve.
-    told
-        Further keys of [target].
-    fluid
-        Viscosity of a stated film [Pa s], 0 for none.
+    - `bench`, `flat`, `strikers`: kind of rig and its bodies.
+    - `which`, `angle`, `speed`, `temperature`, `load`: (n,) striker's number, angle [rad], normal
+      speed [m/s], temperature [K], load of a press [N], 0 for a blow.
+    - `mu`: friction as stated.
+    - `noise`: column to (number, fraction): standard deviation as stated.
+    - `heights`: whether heights are stated, with an error that all trials of one height share.
+    - `gauge`: column to the stated standard deviation of a scale that its readings share.
+    - `curve`: (2, k) plastic strain and stress over the strength, where the sheet has the metal's
+      curve.
+    - `told`: further keys of [target].
+    - `fluid`: viscosity of a stated film [Pa s], 0 for none.
     """
 
     bench: str

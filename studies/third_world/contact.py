@@ -33,18 +33,11 @@ _WIDE = np.linspace(math.log(1e-6), math.log(1e5), 3000)
 class Law:
     """What the dents of one metal are like; the defaults are finite elements' within 5 % rms.
 
-    Parameters
-    ----------
-    hardness
-        Mean pressure over strength at E'a/(Y R) = 12.
-    meyer
-        Meyer's exponent m.
-    pile
-        c of the contact's edge in deep dents.
-    unloading
-        Exponent n of the unloading where the dent is plastic.
-    fall
-        Share by which the pressure falls with a/R, as in dents that are no longer shallow.
+    - `hardness`: mean pressure over strength at E'a/(Y R) = 12.
+    - `meyer`: meyer's exponent m.
+    - `pile`: c of the contact's edge in deep dents.
+    - `unloading`: exponent n of the unloading where the dent is plastic.
+    - `fall`: share by which the pressure falls with a/R, as in dents that are no longer shallow.
     """
 
     hardness: float = 2.53

@@ -75,16 +75,10 @@ def draw(
 ) -> Truth:  # fmt: skip
     """Draw a set.
 
-    Parameters
-    ----------
-    rng
-        Source of everything.
-    kind
-        `null`, `single`, `pair` or `outside`.
-    name
-        Rig of a null, effect of a single or of what is outside, both of a pair with a plus.
-    tries
-        Draws of which the one nearest to a size that is seen is kept.
+    - `rng`: source of everything.
+    - `kind`: `null`, `single`, `pair` or `outside`.
+    - `name`: rig of a null, effect of a single or of what is outside, both of a pair with a plus.
+    - `tries`: draws of which the one nearest to a size that is seen is kept.
     """
     tried: list[tuple[float, Truth]] = []
     names = [] if kind == "null" else name.split("+")

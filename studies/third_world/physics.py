@@ -23,35 +23,21 @@ Rub = Callable[[Array, Array], Array]
 class Physics:
     """Rows of blows, SI, (n,) each unless said otherwise; effects are put in place.
 
-    Parameters
-    ----------
-    rig, law
-        As stated, and what the metal's dents are like.
-    R, E, Y, mass, inertia, mu, angle, speed, tangential
-        True values; the tangential speed is along +x.
-    strength, rub, plough
-        Factors of the strength, and factors and terms of the friction.
-    flat
-        Radius of a flat on the tip [m], 0 for none.
-    layer
-        Height of asperities [m], share of the nominal area that they bear on, share of the height
-        that a dent keeps.
-    damper
-        Form and number of a loss in the contact.
-    dashpot
-        Force over a^2 and speed [Pa s/m], of waves that go off into the flat.
-    plate
-        Speed of the plate over the force [m/(N s)].
-    support
-        Mass, stiffness, damping; none if the mass is 0.
-    slip
-        Tangential over Mindlin's stiffness; rigid if 0.
-    flexible, loss
-        Whether rods vibrate, and their loss time [s].
-    film
-        Loss of speed in a film, and its share on the way out.
-    adhesion
-        Energy that parting takes [J].
+    - `rig`, `law`: as stated, and what the metal's dents are like.
+    - `R`, `E`, `Y`, `mass`, `inertia`, `mu`, `angle`, `speed`, `tangential`: true values; the
+      tangential speed is along +x.
+    - `strength`, `rub`, `plough`: factors of the strength, and factors and terms of the friction.
+    - `flat`: radius of a flat on the tip [m], 0 for none.
+    - `layer`: height of asperities [m], share of the nominal area that they bear on, share of the
+      height that a dent keeps.
+    - `damper`: form and number of a loss in the contact.
+    - `dashpot`: force over a^2 and speed [Pa s/m], of waves that go off into the flat.
+    - `plate`: speed of the plate over the force [m/(N s)].
+    - `support`: mass, stiffness, damping; none if the mass is 0.
+    - `slip`: tangential over Mindlin's stiffness; rigid if 0.
+    - `flexible`, `loss`: whether rods vibrate, and their loss time [s].
+    - `film`: loss of speed in a film, and its share on the way out.
+    - `adhesion`: energy that parting takes [J].
     """
 
     rig: Rig
@@ -91,14 +77,8 @@ class Physics:
 def physics_of(rig: Rig, law: Law, z: dict[str, float], release: Array | None = None) -> Physics:
     """Return the blows of a rig without effects.
 
-    Parameters
-    ----------
-    rig, law
-        The rig, and its metal.
-    z
-        What differs from the sheet, in its standard deviations.
-    release
-        (n,) factor on each trial's speed.
+    `rig`, `law`: the rig, and its metal; `z`: what differs from the sheet, in its standard
+    deviations; `release`: (n,) factor on each trial's speed.
     """
     off = {k: TOLERANCE[k] * z.get(k, 0.0) for k in TOLERANCE}
     bodies = [rig.strikers[k] for k in rig.which]
@@ -128,23 +108,15 @@ def physics_of(rig: Rig, law: Law, z: dict[str, float], release: Array | None = 
 class Bodies:
     """Linear bodies: (n, d) masses, directions of the normal and tangential motion of the contact.
 
-    Parameters
-    ----------
-    mass, normal, tangential, start
-        (n, d) masses, the contact's velocities over those of each coordinate, and first velocities.
-    stiff
-        (n, d, d) stiffness, None for rigid ones.
-    loss
-        Damping over stiffness [s].
-    drag
-        (n, d) damping of single coordinates [N s/m].
-    rigid
-        (n, 3, d) velocity along y and x of the rigid body's contact, and its spin, from all
-        coordinates.
-    most
-        (n,) longest stable step [s].
-    follow
-        (n,) how long the bodies are watched after they part [s].
+    - `mass`, `normal`, `tangential`, `start`: (n, d) masses, the contact's velocities over those of
+      each coordinate, and first velocities.
+    - `stiff`: (n, d, d) stiffness, None for rigid ones.
+    - `loss`: damping over stiffness [s].
+    - `drag`: (n, d) damping of single coordinates [N s/m].
+    - `rigid`: (n, 3, d) velocity along y and x of the rigid body's contact, and its spin, from all
+      coordinates.
+    - `most`: (n,) longest stable step [s].
+    - `follow`: (n,) how long the bodies are watched after they part [s].
     """
 
     mass: Array

@@ -27,12 +27,7 @@ _SHAPES = ("gaussian", "laplace", "flat", "lognormal")
 def write(truth: Truth, folder: Path, *, name: str) -> None:
     """Make the recordings of a set.
 
-    Parameters
-    ----------
-    truth
-        The set.
-    folder, name
-        Where and under which name; neither says what it conceals.
+    `folder`, `name`: where and under which name; neither says what it conceals.
     """
     rig, n = truth.rig, len(truth.rig.which)
     rng, settings = released(truth)
@@ -119,16 +114,8 @@ def table(
 ) -> list[list[str]]:
     """Return trials.csv with its header.
 
-    Parameters
-    ----------
-    rig
-        Its settings, n of them.
-    speed, read
-        (n,) as stated, and as read by column.
-    rows
-        Which, in the order of testing.
-    first
-        Number of the first.
+    `rig`: its settings, n of them; `speed`, `read`: (n,) as stated, and as read by column; `rows`:
+    which, in the order of testing; `first`: number of the first.
     """
     pressed, hot = bool(np.any(rig.load > 0.0)), bool(np.ptp(rig.temperature) > 0.0)
     aslant = rig.oblique and not rig.rods

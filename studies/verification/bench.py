@@ -77,16 +77,8 @@ class Solved:
 class Bench:
     """What a check is given to work with.
 
-    Parameters
-    ----------
-    folder
-        Where results and solves are kept.
-    effort
-        How finely to solve.
-    say
-        Called with a line of progress.
-    publish
-        Called by a long check with what it has so far.
+    `folder`: where results and solves are kept; `effort`: how finely to solve; `say`: called with a
+    line of progress; `publish`: called by a long check with what it has so far.
     """
 
     folder: Path

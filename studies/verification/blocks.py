@@ -30,12 +30,8 @@ _MOST_ITERATIONS = 30
 class Block:
     """A meshed body of one material with E = 1.
 
-    Parameters
-    ----------
-    mesh
-        Quadrilaterals; coordinates (r, z).
-    elements
-        Constants of the production elements on it.
+    `mesh`: quadrilaterals; coordinates (r, z); `elements`: constants of the production elements on
+    it.
     """
 
     mesh: skfem.MeshQuad
@@ -111,10 +107,7 @@ def stiffness(body: Block, u: Array, *, state: State) -> tuple[Array, sparse.csr
 def equilibrium(body: Block, guess: Array, *, fixed: Integers, state: State) -> Array:
     """Displacements in equilibrium, those of `fixed` as they are in `guess`.
 
-    Raises
-    ------
-    ArithmeticError
-        Newton's method does not converge.
+    Raises `ArithmeticError`: Newton's method does not converge.
     """
     u = guess.copy()
     free = np.setdiff1d(np.arange(u.size), fixed)
@@ -135,16 +128,8 @@ def walk(
 ) -> list[tuple[Array, Array, State]]:
     """Displacements, forces and state after each step of an imposed displacement field.
 
-    Parameters
-    ----------
-    body
-        The body.
-    steps
-        Increasing load factors, shape (n,).
-    fixed
-        Degrees of freedom that are imposed.
-    imposed
-        Gives all displacements at a load factor; those of `fixed` are used.
+    `body`: the body; `steps`: increasing load factors, shape (n,); `fixed`: degrees of freedom that
+    are imposed; `imposed`: gives all displacements at a load factor; those of `fixed` are used.
     """
     u = np.zeros(2 * body.mesh.p.shape[1])
     state = State.virgin(len(body.elements.conn))

@@ -12,10 +12,7 @@ _WINDOW = 0.45  # half width of the local fit in ln Delta: several surface eleme
 def smoothed(delta: Array, values: Array) -> Array:
     """Local quadratic in ln Delta over +-0.45, shape (n,); a positive quantity is best given as ln.
 
-    Parameters
-    ----------
-    delta, values
-        Shape (n,).
+    `delta`, `values`: shape (n,).
     """
     x = np.log(delta)
     out = np.empty_like(values)

@@ -38,12 +38,7 @@ _STILL = 1e-6
 class Similar:
     """Contact of one exponent.
 
-    Parameters
-    ----------
-    invariant
-        c^2 = a^2/(2 R h).
-    pressure
-        Mean pressure over K (a/R)^n.
+    `invariant`: c^2 = a^2/(2 R h); `pressure`: mean pressure over K (a/R)^n.
     """
 
     invariant: float
@@ -53,15 +48,10 @@ class Similar:
 def similar(n: float, *, before: float = 0.0, growth: float = 1.4, largest: float = 0.2) -> Similar:
     """Solve for velocities and plastic strains in turn until neither changes.
 
-    Parameters
-    ----------
-    n
-        Exponent of the plastic strain.
-    before
-        What the flow stress counts beside the plastic strain, K (e0 + p)^n, as e0 R c^2/a.
-    growth, largest
-        Of the element sizes away from the die's edge, in log(distance/a) and in angle; half as
-        many elements a side move neither result by more than 0.15 %.
+    - `n`: exponent of the plastic strain.
+    - `before`: what the flow stress counts beside the plastic strain, K (e0 + p)^n, as e0 R c^2/a.
+    - `growth`, `largest`: of the element sizes away from the die's edge, in log(distance/a) and in
+      angle; half as many elements a side move neither result by more than 0.15 %.
     """
     die = Die(growth, largest)
     viscosity = np.full(die.radius.shape, 1.0 / 3.0)

@@ -35,20 +35,12 @@ class Updated(NamedTuple):
 class MaterialPoint:
     """A point, in units of its modulus.
 
-    Parameters
-    ----------
-    G
-        Shear modulus.
-    radius
-        Of the yield circle, sqrt(2/3) Sy/(2 G), of a metal without a flow law.
-    laws
-        The flow law, if there is one.
-    seconds
-        Duration of every step.
-    rule
-        Stress update.
-    unit
-        The modulus [Pa].
+    - `G`: shear modulus.
+    - `radius`: of the yield circle, sqrt(2/3) Sy/(2 G), of a metal without a flow law.
+    - `laws`: the flow law, if there is one.
+    - `seconds`: duration of every step.
+    - `rule`: stress update.
+    - `unit`: the modulus [Pa].
     """
 
     def __init__(

@@ -17,18 +17,11 @@ Cell = str | float | int
 class Measurement:
     """One measured number and the range it should lie in.
 
-    Parameters
-    ----------
-    what
-        Name of the number.
-    value
-        The number; nan if it could not be measured, which never meets a mark.
-    unit
-        Its unit, `"%"` for percent.
-    low, high
-        Mark: the range to be kept; none: open on that side, both none: reported only.
-    source
-        Where the reference or the mark comes from.
+    - `what`: name of the number.
+    - `value`: the number; nan if it could not be measured, which never meets a mark.
+    - `unit`: its unit, `"%"` for percent.
+    - `low`, `high`: mark: the range to be kept; none: open on that side, both none: reported only.
+    - `source`: where the reference or the mark comes from.
     """
 
     what: str
@@ -82,24 +75,14 @@ class Table:
 class Result:
     """What one check found.
 
-    Parameters
-    ----------
-    name, title
-        Of the check.
-    about
-        How it was done, a sentence or two.
-    measurements, tables
-        The numbers.
-    notes
-        What a reader must know to judge the numbers.
-    effort
-        At which effort it was run.
-    numerics_version
-        Of the solver that gave the numbers.
-    cpu_s
-        Processor time of the check in seconds, solves from earlier checks included.
-    complete
-        Whether all of it is measured; if not, the next run goes on.
+    - `name`, `title`: of the check.
+    - `about`: how it was done, a sentence or two.
+    - `measurements`, `tables`: the numbers.
+    - `notes`: what a reader must know to judge the numbers.
+    - `effort`: at which effort it was run.
+    - `numerics_version`: of the solver that gave the numbers.
+    - `cpu_s`: processor time of the check in seconds, solves from earlier checks included.
+    - `complete`: whether all of it is measured; if not, the next run goes on.
     """
 
     name: str

@@ -16,14 +16,8 @@ from .result import Result, read_result, write_result
 def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -> list[Result]:
     """Measure every check that is not yet measured at this effort with these numerics.
 
-    Parameters
-    ----------
-    checks
-        Which.
-    bench
-        Where, and how finely.
-    afresh
-        Measure again what has been measured (shared solves are still reused).
+    `bench`: where, and how finely; `afresh`: measure again what has been measured (shared solves
+    are still reused).
     """
     results = []
     for check in checks:

@@ -39,14 +39,8 @@ _CLOSE, _LOOSE = 0.01, 0.5
 class Curve:
     """Finite-element results of one pair, by the strength Y of the flat and the radius R.
 
-    Parameters
-    ----------
-    stiffness
-        E'/Y.
-    depth, force
-        (n,) depth/R and F/(Y R^2) of the loading.
-    turn, left, back
-        (k,) depth/R at which an unloading begins, residual depth/R, energy given back/(Y R^3).
+    `stiffness`: E'/Y; `depth`, `force`: (n,) depth/R and F/(Y R^2) of the loading; `turn`, `left`,
+    `back`: (k,) depth/R at which an unloading begins, residual depth/R, energy given back/(Y R^3).
     """
 
     stiffness: float
@@ -60,10 +54,7 @@ class Curve:
 def solve(target: Metal, striker: Metal) -> Curve:
     """Load one pair to Delta/R = 0.1 and unload it from six depths.
 
-    Raises
-    ------
-    RuntimeError
-        The finite elements did not get there.
+    Raises `RuntimeError`: the finite elements did not get there.
     """
     R, Y = 1e-3, target.Sy
     bodies = [Material(E=x.E, nu=x.nu, Sy=x.Sy) for x in (striker, target)]

@@ -48,16 +48,11 @@ def exponent(W, ring, c):
 def dent(depth, E, R, Y, flat, c):
     """Force [N], contact radius [m] and residual depth [m] of a dent loaded to `depth`.
 
-    Parameters
-    ----------
-    depth
-        Depth from first touch [m], above 0.
-    E, R, Y
-        Reduced modulus [Pa], tip radius [m], strength of the flat [Pa]; `inf` for an elastic one.
-    flat
-        Radius of a flat on the tip [m]: the contact starts with that area.
-    c
-        Coefficients.
+    - `depth`: depth from first touch [m], above 0.
+    - `E`, `R`, `Y`: reduced modulus [Pa], tip radius [m], strength of the flat [Pa]; `inf` for an
+      elastic one.
+    - `flat`: radius of a flat on the tip [m]: the contact starts with that area.
+    - `c`: coefficients.
     """
     hertz = 4.0 / 3.0 * E * math.sqrt(R * depth) * depth
     if flat > 0.0:

@@ -14,16 +14,11 @@ from numba import njit
 def elastic_forces(u, w, f, du, dw, df, length, EA, EI, GA, loss, fu, fw, ff):
     """Write the nodal forces of the chain into `fu`, `fw`, `ff`.
 
-    Parameters
-    ----------
-    u, w, f, du, dw, df
-        (n,) displacements and their rates; the rate enters through `loss`.
-    length, EA, EI, GA
-        Element length [m] and line stiffnesses [N, N m^2, N].
-    loss
-        Time of stiffness-proportional damping [s].
-    fu, fw, ff
-        (n,) written.
+    - `u`, `w`, `f`, `du`, `dw`, `df`: (n,) displacements and their rates; the rate enters through
+      `loss`.
+    - `length`, `EA`, `EI`, `GA`: element length [m] and line stiffnesses [N, N m^2, N].
+    - `loss`: time of stiffness-proportional damping [s].
+    - `fu`, `fw`, `ff`: (n,) written.
     """
     n = len(u)
     shear = 12.0 * EI / (GA * length * length)

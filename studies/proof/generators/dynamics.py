@@ -356,15 +356,10 @@ def _written(p, result, body, inertia, touches, sums, memory, vy):
 def impact(p, result, trace):
     """Run one impact; write `result` (N_RESULTS,) and samples of `trace` (k, 4).
 
-    Parameters
-    ----------
-    p
-        (N_PARAMETERS,), see `parameters`.
-    result
-        (N_RESULTS,), written.
-    trace
-        (k, 4) of time, height of the tip, normal force, tangential place; every step while room is
-        left, thinned by two whenever it is full. Its first row is (number of rows, 0, 0, 0).
+    - `p`: (N_PARAMETERS,), see `parameters`.
+    - `result`: (N_RESULTS,), written.
+    - `trace`: (k, 4) of time, height of the tip, normal force, tangential place; every step while
+      room is left, thinned by two whenever it is full. Its first row is (number of rows, 0, 0, 0).
     """
     m, inertia, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
     scale, dt = _scales(p)

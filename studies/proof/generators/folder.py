@@ -29,14 +29,8 @@ _RELEASE, _SPEED_READING = 0.01, 0.002
 def write_set(truth: Truth, folder: Path, *, name: str) -> None:
     """Simulate a case of a family and write its recording set.
 
-    Parameters
-    ----------
-    truth
-        The case.
-    folder
-        Made if missing; receives set.toml and trials.csv.
-    name
-        Name of the set; says nothing about what it conceals.
+    `folder`: made if missing; receives set.toml and trials.csv; `name`: name of the set; says
+    nothing about what it conceals.
     """
     rng = np.random.default_rng(truth.instrument.seed)
     rig = truth.rig
@@ -90,16 +84,10 @@ def write_files(
 ) -> None:
     """Write set.toml and trials.csv.
 
-    Parameters
-    ----------
-    truth
-        The case; only its bench and the stated values are written.
-    folder, name
-        Where and under which name.
-    speed
-        (n,) normal speed as the sheet gives it [m/s].
-    readings
-        Column to (n,) readings, NaN for an empty cell.
+    - `truth`: the case; only its bench and the stated values are written.
+    - `folder`, `name`: where and under which name.
+    - `speed`: (n,) normal speed as the sheet gives it [m/s].
+    - `readings`: column to (n,) readings, NaN for an empty cell.
     """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "set.toml").write_text(_setup_text(truth, name), encoding="utf-8")

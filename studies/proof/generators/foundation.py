@@ -45,19 +45,12 @@ def limit(W, a_R, c):
 def press(depth, peak, edge, E, R, Y, c, place, plastic, force):
     """Move the row of springs to `depth`; return the force, the half-width and the plastic work.
 
-    Parameters
-    ----------
-    depth, peak
-        Present and largest depth [m].
-    edge
-        Largest half-width of the row [m]; `place` holds fractions of it.
-    E, R, Y
-        Reduced modulus [Pa], radius [m], strength of the flat [Pa].
-    c
-        Coefficients.
-    place, plastic, force
-        (n,) place over `edge`, ((i + 1/2)/n)^2; plastic shortening [m]; force per length [N/m].
-        The last two are written.
+    - `depth`, `peak`: present and largest depth [m].
+    - `edge`: largest half-width of the row [m]; `place` holds fractions of it.
+    - `E`, `R`, `Y`: reduced modulus [Pa], radius [m], strength of the flat [Pa].
+    - `c`: coefficients.
+    - `place`, `plastic`, `force`: (n,) place over `edge`, ((i + 1/2)/n)^2; plastic shortening [m];
+      force per length [N/m]. The last two are written.
     """
     W = peak / R * (E / Y) ** 2
     wide = spread(W, c) * R

@@ -25,12 +25,7 @@ _SEEN = ("restitution", "permanent_depth_m")
 def draw_metal(rng: np.random.Generator, rig: Rig, *, family: float, z: dict[str, float]) -> Rig:
     """Return a bench whose metal is some way off elastic-perfect plasticity, and says how.
 
-    Parameters
-    ----------
-    rng
-        Source of the draws.
-    rig, family, z
-        As for `simulate.rows_of`.
+    `rig`, `family`, `z`: as for `simulate.rows_of`.
     """
     if np.isinf(rig.target.Sy):
         return rig

@@ -260,18 +260,11 @@ def _between(p, memory, depth, speed, force):
 def normal_force(p, memory, approach, speed, dt, plastic):
     """Normal force [N] of one step; memory and springs are written.
 
-    Parameters
-    ----------
-    p
-        Parameters of the impact (`parameters`).
-    memory
-        (N_MEMORY,) of the contact.
-    approach, speed
-        How far and how fast the tip has come below first touch [m, m/s].
-    dt
-        Time step [s].
-    plastic
-        (n,) plastic shortening of the springs [m].
+    - `p`: parameters of the impact (`parameters`).
+    - `memory`: (N_MEMORY,) of the contact.
+    - `approach`, `speed`: how far and how fast the tip has come below first touch [m, m/s].
+    - `dt`: time step [s].
+    - `plastic`: (n,) plastic shortening of the springs [m].
     """
     depth = approach
     if p[at.ROUGH] > 0.0 and approach > 0.0:

@@ -39,35 +39,21 @@ NUISANCES = ("strength", "modulus", "radius", "mass", "friction", "speed", "angl
 class Rig:
     """A bench with its list of trials.
 
-    Parameters
-    ----------
-    bench
-        Kind of bench.
-    target
-        The flat.
-    strikers
-        All strikers.
-    which, angle, speed, tangential, temperature
-        (n,) striker's number, stated angle [rad], nominal normal speed [m/s], tangential speed of
-        the centre [m/s], temperature [K].
-    mu
-        Stated coefficient of friction.
-    tolerance
-        Standard deviation of each nuisance: a fraction, or radians for the angle.
-    noise
-        Column to (number, fraction): standard deviation of the instrument.
-    drop
-        Whether the sheet states the height instead of the speed.
-    law
-        Key `law` of the flat.
-    told
-        Further keys of [target] and their numbers.
-    liquid
-        Viscosity of a liquid that the sheet states [Pa s], 0 for none.
-    metal
-        Place of a parameter to its value: how the metal differs from elastic-perfect plasticity.
-    metal_told
-        The same in plain values, for the record.
+    - `bench`: kind of bench.
+    - `target`: the flat.
+    - `strikers`: all strikers.
+    - `which`, `angle`, `speed`, `tangential`, `temperature`: (n,) striker's number, stated angle
+      [rad], nominal normal speed [m/s], tangential speed of the centre [m/s], temperature [K].
+    - `mu`: stated coefficient of friction.
+    - `tolerance`: standard deviation of each nuisance: a fraction, or radians for the angle.
+    - `noise`: column to (number, fraction): standard deviation of the instrument.
+    - `drop`: whether the sheet states the height instead of the speed.
+    - `law`: key `law` of the flat.
+    - `told`: further keys of [target] and their numbers.
+    - `liquid`: viscosity of a liquid that the sheet states [Pa s], 0 for none.
+    - `metal`: place of a parameter to its value: how the metal differs from elastic-perfect
+      plasticity.
+    - `metal_told`: the same in plain values, for the record.
     """
 
     bench: str
@@ -94,14 +80,8 @@ class Rig:
     def rows(self, family: float, z: dict[str, float], *, steps: int = 1200) -> Array:
         """Parameters of every impact, without any mechanism, shape (n, N_PARAMETERS).
 
-        Parameters
-        ----------
-        family
-            `CAVITY` or `FOUNDATION`.
-        z
-            Nuisances in standard deviations; those left out are 0.
-        steps
-            Time steps per depth over speed.
+        `family`: `CAVITY` or `FOUNDATION`; `z`: nuisances in standard deviations; those left out
+        are 0; `steps`: time steps per depth over speed.
         """
         factor = {name: 1.0 + self.tolerance[name] * z.get(name, 0.0) for name in NUISANCES[:-1]}
         p = np.zeros((len(self), at.N_PARAMETERS))

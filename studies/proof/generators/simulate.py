@@ -23,18 +23,11 @@ def rows_of(
 ) -> Array:  # fmt: skip
     """Parameters of all impacts with their effects, shape (n, N_PARAMETERS).
 
-    Parameters
-    ----------
-    rig, effects
-        The bench and what acts on it.
-    family
-        Base law.
-    z
-        Nuisances in standard deviations.
-    speed
-        (n,) factor on each trial's speed: what the release really did.
-    steps
-        Time steps per depth over speed.
+    - `rig`, `effects`: the bench and what acts on it.
+    - `family`: base law.
+    - `z`: nuisances in standard deviations.
+    - `speed`: (n,) factor on each trial's speed: what the release really did.
+    - `steps`: time steps per depth over speed.
     """
     p = rig.rows(family, z, steps=steps)
     if speed is not None:
@@ -101,16 +94,10 @@ class Visibility:
     nuisances, to what a metal may be off perfect plasticity and to the numbers of what acts in all
     impacts, in prior standard deviations, the size is sqrt(e' (1 + J J')^-1 e).
 
-    Parameters
-    ----------
-    rig
-        Each condition once.
-    family, z, keep
-        Base law, nuisances, and what acts in all impacts that are compared.
-    plain, weight
-        (m,) readings without more, and one over the noise of their repeats' mean.
-    J
-        (m, k) derivatives over the noise.
+    - `rig`: each condition once.
+    - `family`, `z`, `keep`: base law, nuisances, and what acts in all impacts that are compared.
+    - `plain`, `weight`: (m,) readings without more, and one over the noise of their repeats' mean.
+    - `J`: (m, k) derivatives over the noise.
     """
 
     rig: Rig
@@ -207,14 +194,8 @@ def size_of(
 ) -> float:  # fmt: skip
     """Norm of the effect over the noise, after what the nuisances can imitate is taken out.
 
-    Parameters
-    ----------
-    rig, family, z
-        As for `rows_of`.
-    effects
-        What acts.
-    keep
-        What acts in both impacts that are compared; its numbers are unknown.
+    `rig`, `family`, `z`: as for `rows_of`; `effects`: what acts; `keep`: what acts in both impacts
+    that are compared; its numbers are unknown.
     """
     seen = Visibility.of(rig, family=family, z=z, keep=keep)
     return seen.size(seen.change(effects))
@@ -231,14 +212,7 @@ def beyond_library(rng: np.random.Generator, seen: Visibility, effect: Effect) -
     wrong. The imitators are the generator's own: draws of each effect that the bench can show, the
     nearest of them improved by a simplex search in their numbers.
 
-    Parameters
-    ----------
-    rng
-        Source of the draws.
-    seen
-        The rig, and what else may change its readings.
-    effect
-        One of `OUTSIDE`.
+    `seen`: the rig, and what else may change its readings; `effect`: one of `OUTSIDE`.
     """
     wanted = seen.change([effect])
     least = seen.size(wanted)

@@ -59,25 +59,15 @@ class Instrument:
 class Truth:
     """One concealed case.
 
-    Parameters
-    ----------
-    kind
-        `null`, `single`, `pair` or `outside`.
-    rig
-        The bench.
-    effects
-        What acts; empty for a null.
-    sizes
-        Size of each effect, less what the numbers of others imitate; outside the library, less
-        what that imitates.
-    family
-        Base law: `cavity` or `foundation`.
-    z
-        Nuisances in stated standard deviations.
-    instrument
-        The instrument.
-    more
-        Further facts for the record.
+    - `kind`: `null`, `single`, `pair` or `outside`.
+    - `rig`: the bench.
+    - `effects`: what acts; empty for a null.
+    - `sizes`: size of each effect, less what the numbers of others imitate; outside the library,
+      less what that imitates.
+    - `family`: base law: `cavity` or `foundation`.
+    - `z`: nuisances in stated standard deviations.
+    - `instrument`: the instrument.
+    - `more`: further facts for the record.
     """
 
     kind: str
@@ -129,18 +119,11 @@ def draw(
 ) -> Truth:
     """Draw one case of a family.
 
-    Parameters
-    ----------
-    rng
-        Source of everything that is drawn.
-    kind
-        `null`, `single`, `pair` or `outside`.
-    name
-        The mechanism of a single, or the effect outside the library; drawn if empty.
-    off
-        Whether materials and geometry differ from what is stated; drawn if left out.
-    bench
-        The bench of a null; that of some effect if empty.
+    - `rng`: source of everything that is drawn.
+    - `kind`: `null`, `single`, `pair` or `outside`.
+    - `name`: the mechanism of a single, or the effect outside the library; drawn if empty.
+    - `off`: whether materials and geometry differ from what is stated; drawn if left out.
+    - `bench`: the bench of a null; that of some effect if empty.
     """
     family = str(rng.choice(list(FAMILIES)))
     z = draw_nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}

@@ -37,18 +37,8 @@ def ranked(
 ) -> tuple[str, bool]:
     """Return the claim that `law` is the "largest" or "smallest", and whether it is.
 
-    Parameters
-    ----------
-    values
-        By law.
-    law
-        Of which it is said.
-    first
-        "largest" or "smallest".
-    form
-        Format of the values.
-    without
-        Laws that the text leaves out of the comparison.
+    `values`: by law; `law`: of which it is said; `first`: "largest" or "smallest"; `form`: format
+    of the values; `without`: laws that the text leaves out of the comparison.
 
     Examples
     --------

@@ -78,18 +78,12 @@ as far as figure 3.8 does."""
 class Field:
     """Part of a solved section near the contact; lengths in R, stress in Sy_min.
 
-    Parameters
-    ----------
-    corners
-        Corners of the elements as deformed, shape (n, 4, 2).
-    sphere
-        Whether an element is the sphere's, shape (n,).
-    stress, plastic
-        von Mises stress and equivalent plastic strain, shape (n,).
-    depth, force
-        Loading curve of the same solve, Delta/R and F/(E' R^2), shape (k,); empty in older files.
-    origin
-        Depth, contact radius, force, settings and version of the solve.
+    - `corners`: corners of the elements as deformed, shape (n, 4, 2).
+    - `sphere`: whether an element is the sphere's, shape (n,).
+    - `stress`, `plastic`: von Mises stress and equivalent plastic strain, shape (n,).
+    - `depth`, `force`: loading curve of the same solve, Delta/R and F/(E' R^2), shape (k,); empty
+      in older files.
+    - `origin`: depth, contact radius, force, settings and version of the solve.
     """
 
     corners: Array
@@ -104,10 +98,7 @@ class Field:
 def solve_field(number: str, *, folder: Path = STORE) -> Path:
     """Solve the pair of figure `number` at the level "quick" and keep its field.
 
-    Raises
-    ------
-    RuntimeError
-        The solver did not reach the depth; nothing is written.
+    Raises `RuntimeError`: the solver did not reach the depth; nothing is written.
     """
     wanted, accuracy = WANTED[number], Accuracy.quick()
     pair = wanted.pair()

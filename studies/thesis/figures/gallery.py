@@ -68,10 +68,7 @@ def stored_cases(root: Path) -> list[CaseRecord]:
 def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
     """Draw `chapters` into `folder`, a page each, and write its README.md.
 
-    Raises
-    ------
-    InputError
-        A chapter that there is none of.
+    Raises `InputError`: a chapter that there is none of.
     """
     for chapter in chapters:
         if chapter not in CHAPTERS:

@@ -23,16 +23,10 @@ _FIRST, _LAST, _ROWS = 1e-5, 5.0, 150  # plastic strains of a table
 class Deck:
     """What is to be written.
 
-    Parameters
-    ----------
-    problem
-        Pair and depths; every depth becomes a step.
-    accuracy
-        Settings whose mesh is used.
-    element
-        `"CAX4"` (four nodes, full integration) or `"CAX8R"` (eight nodes, reduced).
-    stiffness
-        Contact pressure over penetration [MPa/R].
+    - `problem`: pair and depths; every depth becomes a step.
+    - `accuracy`: settings whose mesh is used.
+    - `element`: `"CAX4"` (four nodes, full integration) or `"CAX8R"` (eight nodes, reduced).
+    - `stiffness`: contact pressure over penetration [MPa/R].
     """
 
     problem: fem.ContactProblem

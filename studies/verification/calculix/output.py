@@ -32,16 +32,10 @@ FOLDER = Path(__file__).resolve().parents[3] / "data" / "reference" / "calculix"
 class Reference:
     """What CalculiX gave; lengths in R, force in MPa R^2, one entry a depth reached.
 
-    Parameters
-    ----------
-    element, version
-        Element and version of CalculiX.
-    cpu_s
-        Processor seconds.
-    unknowns
-        Twice the number of nodes in the meridian plane.
-    delta, force, radius, share
-        Results, shape (n,).
+    - `element`, `version`: element and version of CalculiX.
+    - `cpu_s`: processor seconds.
+    - `unknowns`: twice the number of nodes in the meridian plane.
+    - `delta`, `force`, `radius`, `share`: results, shape (n,).
     """
 
     element: str
@@ -70,10 +64,7 @@ def run_deck(deck: Deck, *, name: str) -> Reference:
 def solve_deck(text: str) -> tuple[str, float]:
     """Return what CalculiX prints for the text of a deck, and its processor seconds.
 
-    Raises
-    ------
-    InputError
-        CalculiX is not installed.
+    Raises `InputError`: CalculiX is not installed.
     """
     if shutil.which(_COMMAND) is None:
         raise InputError(

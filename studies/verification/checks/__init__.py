@@ -21,14 +21,8 @@ if TYPE_CHECKING:
 class Check:
     """A named check; its code is loaded when it is run, so that names and titles cost nothing.
 
-    Parameters
-    ----------
-    name, title
-        As the command and the report show them.
-    home
-        Module of this folder and its function, `module.function`.
-    missed
-        Why marks of it stand missed, and what was tried.
+    `name`, `title`: as the command and the report show them; `home`: module of this folder and its
+    function, `module.function`; `missed`: why marks of it stand missed, and what was tried.
     """
 
     name: str
@@ -93,10 +87,7 @@ CHECKS: tuple[Check, ...] = (
 def check_named(name: str) -> Check:
     """Return a check.
 
-    Raises
-    ------
-    InputError
-        There is none of that name; the message lists the known ones.
+    Raises `InputError`: there is none of that name; the message lists the known ones.
     """
     for check in CHECKS:
         if check.name == name:

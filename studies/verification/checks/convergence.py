@@ -26,20 +26,12 @@ _RIPPLE_MARKS = {"F": 0.1, "a": 0.05}
 class Plan:
     """A level of accuracy and what it is compared with.
 
-    Parameters
-    ----------
-    base
-        The level whose error is estimated.
-    coarser
-        The same steps on elements twice as large.
-    bulkier
-        The same elements at the contact edge, those of the bulk larger by about a third.
-    bolder
-        The same elements with steps twice as large (in ln Delta).
-    deepest
-        Largest Delta/R.
-    unload_from
-        Depths that the base is unloaded from.
+    - `base`: the level whose error is estimated.
+    - `coarser`: the same steps on elements twice as large.
+    - `bulkier`: the same elements at the contact edge, those of the bulk larger by about a third.
+    - `bolder`: the same elements with steps twice as large (in ln Delta).
+    - `deepest`: largest Delta/R.
+    - `unload_from`: depths that the base is unloaded from.
     """
 
     base: fem.Accuracy

@@ -114,16 +114,10 @@ _HARDENING = (
 class Compared(NamedTuple):
     """What the metals show: rows of the table, and what is measured of them.
 
-    Parameters
-    ----------
-    rows
-        Of the table.
-    off
-        Mechanism to what its form leaves, over the rms of each effect, (n, 3) a metal.
-    kept
-        Strength kept at the turn with the law's own rise, a rate.
-    proof
-        Effect on the restitution in the proof's two simulations over that here.
+    - `rows`: of the table.
+    - `off`: mechanism to what its form leaves, over the rms of each effect, (n, 3) a metal.
+    - `kept`: strength kept at the turn with the law's own rise, a rate.
+    - `proof`: effect on the restitution in the proof's two simulations over that here.
     """
 
     rows: list[tuple[Cell, ...]]

@@ -53,14 +53,10 @@ class Twin:
 class Theirs:
     """What CalculiX gave at the depths of the coarser increments.
 
-    Parameters
-    ----------
-    force, radius, share
-        [MPa R^2], [R], [-], shape (n,): its first-order error in the increment taken off.
-    increment
-        What the finer increments still miss of F, relative, shape (n,).
-    runs
-        The two runs.
+    - `force`, `radius`, `share`: [MPa R^2], [R], [-], shape (n,): its first-order error in the
+      increment taken off.
+    - `increment`: what the finer increments still miss of F, relative, shape (n,).
+    - `runs`: the two runs.
     """
 
     force: Array

@@ -33,16 +33,8 @@ _HARDENING = (3, 11)  # of `validation_hardening`
 class Off:
     """How far one solve is off along its depths.
 
-    Parameters
-    ----------
-    name
-        Of its pair.
-    equal
-        Whether the two bodies are equally strong.
-    w
-        Delta/delta_c, shape (n,).
-    error
-        Of ln F, ln a, the share and ln H, shape (4, n).
+    `name`: of its pair; `equal`: whether the two bodies are equally strong; `w`: delta/delta_c,
+    shape (n,); `error`: of ln F, ln a, the share and ln H, shape (4, n).
     """
 
     name: str
