@@ -36,8 +36,6 @@ def air(temperature: float = 293.15, pressure: float = 101325.0) -> Fluid:
 
     `temperature`: [K]; `pressure`: [Pa].
 
-    References
-    ----------
     U.S. Standard Atmosphere 1976, Eq. 42 (density) and Eq. 51 (viscosity by Sutherland's law).
 
     Examples
@@ -62,8 +60,6 @@ def drag_coefficient(reynolds: float) -> float:
 
     `reynolds`: speed times diameter over kinematic viscosity.
 
-    References
-    ----------
     R. Clift, J. R. Grace, M. E. Weber, Bubbles, Drops, and Particles (1978), Table 5.2.
 
     Examples
@@ -133,8 +129,6 @@ def rod_drag_across(reynolds: float, slenderness: float) -> float:
 
     `reynolds`: speed times diameter over kinematic viscosity; `slenderness`: length over diameter.
 
-    References
-    ----------
     F. M. White, Viscous Fluid Flow (1991), the fit to the cylinder's curve; C. Matthews,
     Aeronautical Engineer's Data Book (2002), p. 95, for the finite length at Re near 1e5.
 
@@ -153,8 +147,6 @@ def rod_drag_along(slenderness: float) -> float:
 
     Round ends have less: an upper bound for a rod with round tips.
 
-    References
-    ----------
     C. Matthews, Aeronautical Engineer's Data Book (2002), p. 95.
 
     Examples

@@ -158,8 +158,6 @@ class Rate:
     - `number`: q, C or m of the law [-].
     - `stress`: overstress at the reference rate [Pa]; of that law only.
 
-    References
-    ----------
     Cowper and Symonds, Brown University Tech. Rep. 28 (1957); Johnson and Cook, 7th Int. Symp. on
     Ballistics (1983) 541; Perzyna, Adv. Appl. Mech. 9 (1966) 243.
     """

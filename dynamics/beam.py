@@ -68,8 +68,6 @@ def axial_frequencies(length: float, material: Material, *, count: int) -> Array
 def shear_coefficient(nu: float) -> float:
     """Cowper's coefficient of a round section, 6 (1 + nu) / (7 + 6 nu).
 
-    References
-    ----------
     G. R. Cowper, J. Appl. Mech. 33 (1966) 335-340.
     """
     return 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu)

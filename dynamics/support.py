@@ -18,8 +18,6 @@ def plate_support(material: Material, *, thickness: float) -> Support:
     Valid while no reflection has come back from an edge, for a contact small against the
     thickness.
 
-    References
-    ----------
     C. Zener, Phys. Rev. 59 (1941) 669-673.
     """
     _check(material)
@@ -34,8 +32,6 @@ def rod_support(material: Material, *, radius: float) -> Support:
 
     Valid while nothing has come back from the far end, for a contact small against the rod.
 
-    References
-    ----------
     W. Goldsmith, Impact (1960), chapter IV (longitudinal impact of spheres on rods).
     """
     _check(material)
@@ -58,8 +54,6 @@ def half_space_radiation(material: Material) -> float:
     From the imaginary part of Lamb's solution at the loaded point for wavelengths long against
     the contact: kappa = J(nu) / (2 pi G c_s).
 
-    References
-    ----------
     G. F. Miller and H. Pursey, Proc. R. Soc. A 233 (1955) 55-69 (shares of the waves).
     S. C. Hunter, J. Mech. Phys. Solids 5 (1957) 162-171 (loss of an elastic impact).
     """

@@ -21,8 +21,6 @@ it. Three questions are answered here, for the walk and for the oracle alike:
 * How much of it is the tip's own? Where the law lets the share sigma of the residual depth stay in
   the tip, the tip's peak counts with sigma everywhere, the flat's with 1 - sigma.
 
-References
-----------
 K. L. Johnson, Contact Mechanics, Cambridge 1985, 6.4 (shape of an unloaded indentation).
 """
 

@@ -5,8 +5,6 @@ They act on the numbers from which a pair's curves are drawn, never on the curve
 bounds, rise of the force and balance of energy stay what they are. Away from all bumps, outside the
 data, nothing moves: there the fitted law is the compact one.
 
-References
-----------
 C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (2006), 8.3: subset of
 regressors.
 """

@@ -18,8 +18,6 @@ its exponent (second degree) or the bend of its curve, the change of the exponen
 (first degree): see `features_of`. Without hardening, and before yield, it is nothing. The force is
 never below that of perfectly plastic bodies at the lowest stress under the contact.
 
-References
-----------
 D. Tabor, The Hardness of Metals (1951). K. L. Johnson, Contact Mechanics (1985), 6.3.
 """
 

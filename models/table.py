@@ -5,8 +5,6 @@ through the recorded depths in logarithms (C1; Fritsch and Carlson), and are exa
 first yield. Permanent depth and energy of recovery follow from those of the unloadings, between
 which the elastic displacement over F/a, the bodies' parts and the exponent are interpolated.
 
-References
-----------
 F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
 """
 

@@ -5,8 +5,6 @@
   below 0, Chrono's Hooke, Newton;
 * Hunt and Crossley's on a straight spring, F = k d max(1 + chi d', 0): Drake's point contact.
 
-References
-----------
 Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239.
 T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465: the dashpot's contact ends where it would
 pull.

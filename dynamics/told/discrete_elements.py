@@ -9,8 +9,6 @@ depth, force and time is stated. `collisions` has the damped ones; beside them:
 * linear with two stiffnesses (Luding; Walton and Braun): LIGGGHTS `hooke/hysteresis`, YADE
   `LudingMat`: depth and restitution are right.
 
-References
-----------
 LAMMPS, pair_style granular.
 S. Luding, Granular Matter 10 (2008) 235.
 """

@@ -13,8 +13,6 @@ from .discrete_elements import SOFTENED, ExportedRow, Substitute, two_balls
 def tangential_stiffness(pair: Pair) -> float:
     """Mindlin's stiffness over the contact radius, 8 G* [Pa]; 1/G* = sum of (2 - nu)/G.
 
-    References
-    ----------
     R. D. Mindlin, J. Appl. Mech. 16 (1949) 259. K. L. Johnson, Contact Mechanics (1985), 7.2.
     """
     bodies = (b for b in (pair.sphere, pair.flat) if not b.rigid)

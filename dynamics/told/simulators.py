@@ -3,8 +3,6 @@
 Each program joins the numbers of two bodies in its own way; the lines give both bodies the same, so
 that the contact has what the table says.
 
-References
-----------
 MuJoCo, Computation, solver parameters: with negative `solref` the acceleration of the contact is
 -stiffness r - damping v, whatever masses and `solimp` are. Drake, compliant point contact:
 k_1 k_2/(k_1 + k_2) and k x max(1 + d x', 0). YADE, LudingPM: S. Luding, Granular Matter 10 (2008)

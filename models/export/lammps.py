@@ -1,7 +1,5 @@
 """The exported C as a normal model of LAMMPS: a class that is built with it.
 
-References
-----------
 LAMMPS, pair_style granular and fix wall/gran; src/GRANULAR/gran_sub_mod_normal.h, whose class a
 normal model derives from, of 2022 to 2026.
 """

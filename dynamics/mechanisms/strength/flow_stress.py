@@ -4,8 +4,6 @@ Each gives the metal's strength relative to the stated one; the law then answers
 strength (`dynamics.strength`). The strain rate of an indentation is taken as 0.4 v/a, its
 representative strain as 0.2 (a - a_c)/R, as the law of metals that harden has it.
 
-References
-----------
 D. Tabor, The Hardness of Metals (1951).
 """
 
