@@ -237,10 +237,6 @@ class DiagnosisRules:
         "part of an uncertainty that is left from which a measurement is not worth it [-]",
         "a tenth is no reason to go back to the rig",
     )  # fmt: skip
-    decides: float = rule(
-        1.0, "standard deviations by which rivals differ for one trial to tell much [-]",
-        "half a nat",
-    )  # fmt: skip
     session: float = rule(
         120.0, "length of a session where none is stated [min]",
         "a morning at the rig",

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ...core.unstated import unstated_equal
-from ..rules import RULES
 
 
 @unstated_equal
@@ -40,15 +39,3 @@ class Proposal:
     def per_hour(self) -> float:
         """Information over the hours it takes [nat/h]; 0 where there is nothing to do."""
         return 60.0 * self.information / self.minutes if self.minutes > 0.0 else 0.0
-
-    @property
-    def gains(self) -> tuple[str, ...]:
-        """What it would tell, in words."""
-        found = []
-        apart = math.sqrt(max(self.expected_discrimination, 0.0))
-        differ = f"the explanations would then differ by {apart:.2g} standard deviations"
-        if apart > 0.0:
-            found.append(differ if apart >= RULES.decides else f"once will not decide: {differ}")
-        if math.isfinite(self.interval):
-            found.append(f"the interval would be {self.interval:.2g} times as wide as now")
-        return tuple(found)

@@ -12,7 +12,6 @@ from dentscope.discrepancy.choice.outside import odd_repeats, outside_of
 from dentscope.discrepancy.comparison.cells import Scatter, cells_of
 from dentscope.discrepancy.curves.readings import Readings, _corrected
 from dentscope.discrepancy.estimates import law_notes
-from dentscope.discrepancy.experiments.proposal import Proposal
 from dentscope.discrepancy.inference.derivatives import FORMS, derivatives, form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import outlying
@@ -166,11 +165,6 @@ def test_a_reduction_that_is_off_by_a_quarter_says_nothing() -> None:
     assert found == pytest.approx((10.0 / 1.2, math.hypot(0.1, 0.03) / 1.2))
     assert _corrected(given, {"peak_force_N": (1.26, 0.0)}) == {}
     assert _corrected(given, {"peak_force_N": (1.0, 0.26)}) == {}
-
-
-def test_a_trial_tells_much_where_rivals_lie_a_deviation_apart() -> None:
-    assert Proposal("", 0.98**2).gains[0].startswith("once will not decide")
-    assert Proposal("", 1.02**2).gains[0].startswith("the explanations would then differ by 1 ")
 
 
 def test_a_part_of_the_misfit_below_nothing_is_told_as_nothing() -> None:

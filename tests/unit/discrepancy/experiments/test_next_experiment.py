@@ -24,7 +24,6 @@ from dentscope.discrepancy.experiments.next_experiment import (
     rivals_of,
     with_half_the_noise,
 )
-from dentscope.discrepancy.experiments.proposal import Proposal
 from dentscope.discrepancy.experiments.session import chosen, takes
 from dentscope.discrepancy.unknowns.nuisances import Nuisance
 from dentscope.dynamics.mechanisms import Surroundings
@@ -316,14 +315,3 @@ def test_half_the_noise_of_cells_that_share_a_reading_is_still_a_covariance() ->
     assert one[0] == pytest.approx([1.02, 2.0, 2.0])
     assert np.linalg.eigvalsh(one).min() > 0.0
     assert np.linalg.eigvalsh(total - np.diag(0.75 * np.diag(noise))).min() < 0.0
-
-
-def test_a_trial_that_would_not_decide_says_so() -> None:
-    # D is a squared distance in standard deviations
-    told = "the explanations would then differ by {} standard deviations"
-    assert Proposal("x", 0.04).gains == (f"once will not decide: {told.format('0.2')}",)
-    assert Proposal("x", 9.0).gains == (told.format("3"),)
-    assert Proposal("x", 0.0, interval=0.7).gains == (
-        "the interval would be 0.7 times as wide as now",
-    )
-    assert Proposal("x", 0.0).gains == ()
