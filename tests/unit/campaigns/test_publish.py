@@ -192,6 +192,19 @@ def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_pat
         published_designs(tmp_path / "data")
 
 
+def test_a_bit_flipped_anywhere_is_refused(tmp_path):
+    run = stored(tmp_path / "run", n=1)
+    whole = replace(DESIGN, make=lambda: made()[:1])
+    for path in (*Store(run).files(), *publish(whole, run, tmp_path / "data")):
+        image = path.read_bytes()
+        for at in range(0, len(image), len(image) // 25):
+            changed = bytearray(image)
+            changed[at] ^= 1 << at % 8
+            path.write_bytes(changed)
+            with pytest.raises(InputError):
+                read_curves(path)
+
+
 @pytest.mark.parametrize("name", ["a" * 4000 + ".h5", "../c.h5", ".h5", "a/b.h5"])
 def test_a_part_of_an_impossible_name_is_one_line(tmp_path, name):
     folder = tmp_path / "data"
