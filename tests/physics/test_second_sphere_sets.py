@@ -6,7 +6,6 @@ import tomllib
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.rank import baseline_situations
@@ -129,20 +128,3 @@ def test_a_held_ball_moves_on_its_support_with_its_own_mass(tmp_path):
     (support,) = [m for m in MECHANISMS if m.name == "support-compliance"]
     _, mass, _ = support.ranges(situations)
     assert mass.low == pytest.approx(8500 * 4 / 3 * math.pi * 0.01**3)
-
-
-def test_balls_on_a_held_ball_with_nothing_missing(tmp_path):
-    """Five speeds three times, by the simulator of impacts with noise of a stated size."""
-    rng = np.random.default_rng(1)
-    rows = ["trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m\n"]
-    for speed in (0.5, 1.0, 2.0, 3.0, 4.5):
-        text = f"{KINDS['held']}[impact]\nimpact_speed_m_s = {speed}\n"
-        truth = strike(setup_of(tomllib.loads(text), source="file").scene(LAWS["fitted"]))
-        for _ in range(3):
-            e = truth.restitution + 0.005 * rng.standard_normal()
-            depth = truth.residual_flat_m + 5e-7 * rng.standard_normal()
-            rows.append(f"{len(rows)},ball,90,{speed},{e},{depth}\n")
-    (tmp_path / "set.toml").write_text(f'format = "recording-set/1"\n{KINDS["held"]}{NOISE}')
-    (tmp_path / "trials.csv").write_text("".join(rows))
-    found = diagnose(read(tmp_path))
-    assert found.choice.verdict == "adequate"

@@ -145,6 +145,7 @@ diagnose kharaz-2001-oblique --seed many
 diagnose kharaz-2001-oblique --law hertz
 diagnose kharaz-2001-oblique --seed 1.5
 diagnose kharaz-2001-oblique --seed -1
+diagnose kharaz-2001-oblique --assume drag
 diagnose kharaz-2001-oblique liquidmetal-bounces
 recordings nonsense
 recordings check

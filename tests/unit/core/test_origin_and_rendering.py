@@ -22,6 +22,16 @@ def test_environment_names_what_influences_numbers():
     assert found["python"] == sys.version.split()[0]
 
 
+def test_an_edited_source_is_another_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "core" / "provenance.py"))
+    (tmp_path / "fem").mkdir()
+    sources = set()
+    for text in ("a = 1\n", "a = 2\n", "a = 1\n"):
+        (tmp_path / "fem" / "solve.py").write_text(text)
+        sources.add(provenance._source())
+    assert len(sources) == 2
+
+
 def test_numbers_that_are_not_finite_have_an_identity():
     assert provenance.content_id(math.inf) != provenance.content_id(-math.inf)
     assert provenance.content_id(math.nan) == provenance.content_id(math.nan)

@@ -161,15 +161,6 @@ def test_a_strength_that_is_assumed_is_not_worth_a_solve(tmp_path, solved, monke
     assert any("target.Sy_Pa is not stated" in note for note in problem.notes)
 
 
-def test_the_level_is_the_coarsest_that_is_small_beside_the_metal(solved):
-    pair, onset = solved.pair, solved.yields_at
-    levels = [solve._level(pair, 0.02, error) for error in (WITH_CURVE["force"], METAL["force"])]
-    assert levels == ["quick", "quick"]
-    assert solve._level(pair, 0.02, 0.005) == "production"
-    # just beyond first yield both are as good
-    assert solve._level(pair, 2.0 * onset, 0.01) == "quick"
-
-
 @pytest.mark.fe
 def test_finite_elements_take_the_place_of_the_closed_form(tmp_path, solved, monkeypatch):
     """Solved here, quickly, for the depths of the set; the published solve recorded it finely."""

@@ -90,16 +90,6 @@ def test_friction_and_mass_run_through_their_values() -> None:
     assert found["friction_impulse_ratio"] == pytest.approx([0.0, 0.1], abs=1e-6)
 
 
-def test_a_spheres_angle_is_that_of_its_velocity() -> None:
-    found = impacts(scene(BALL), speeds=2.0, angles=np.radians([30.0, 90.0]))
-    assert found["approach_tangential_m_s"] == pytest.approx([-2.0 * math.sqrt(3.0), 0.0])
-    assert found["route"].tolist() == ["steps", "work"]
-    one = scene(BALL, approach=Approach(2.0, tangential=-2.0 * math.sqrt(3.0)))
-    check({n: found[n][0] for n in SEEN}, strike(one, Settings(tolerance=1e-10)))
-    # the normal motion of a sphere does not know of the tangential one
-    assert found["restitution"][0] == pytest.approx(found["restitution"][1], abs=1e-6)
-
-
 def test_what_the_work_cannot_settle_is_stepped() -> None:
     # at 4 mm/s gravity does most of the work of this contact
     found = impacts(scene(BALL), speeds=[1e-3, 1.0], settings=Settings())

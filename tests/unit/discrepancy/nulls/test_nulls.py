@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,11 @@ def reference(Y: float) -> NullReference:
     )
 
 
+def elastic_reference(**between: float) -> NullReference:
+    ref = reference(math.inf)
+    return replace(ref, recovery=ref.depth, crater=0.0 * ref.depth, **between)
+
+
 def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> NullBodies:
     one = np.ones(n)
     return NullBodies(
@@ -41,19 +47,7 @@ def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Nul
 
 def test_elastic_impact_is_hertzs() -> None:
     plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
-    ref = reference(math.inf)
-    elastic = NullReference(
-        R,
-        E,
-        math.inf,
-        ref.depth,
-        ref.force,
-        ref.depth,
-        0.0 * ref.depth,
-        ref.radius,
-        low=1e-6,
-        high=1e-3,
-    )
+    elastic = elastic_reference(low=1e-6, high=1e-3)
     seen = collide(bodies(1, 1.0), [curve(elastic, plain)])
     k = 4.0 / 3.0 * E * math.sqrt(R)
     depth = (5.0 * 0.1 / (4.0 * k)) ** 0.4
@@ -64,19 +58,7 @@ def test_elastic_impact_is_hertzs() -> None:
 
 
 def test_a_null_law_without_yield_gives_everything_back() -> None:
-    ref = reference(math.inf)
-    elastic = NullReference(
-        R,
-        E,
-        math.inf,
-        ref.depth,
-        ref.force,
-        ref.depth,
-        0.0 * ref.depth,
-        ref.radius,
-        low=1e-5,
-        high=1e-4,
-    )
+    elastic = elastic_reference(low=1e-5, high=1e-4)
     steep = Draw("cut-off", 0.5, 0.5, 0.5, (0.03, 0.03), (0.0, 0.0), 0.0)
     seen = collide(bodies(1, 1.0), [curve(elastic, steep)])
     assert seen["restitution"][0] == pytest.approx(1.0, abs=4e-4)

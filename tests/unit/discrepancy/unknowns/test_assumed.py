@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.cli import run
 from dentscope.core import InputError
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
@@ -49,10 +48,3 @@ def test_what_cannot_act_is_refused(name, why) -> None:
     with pytest.raises(InputError, match=why) as told:
         problem_of(given, law="fitted", assume=(name,))
     assert "half-space-waves" in str(told.value.allowed)
-
-
-def test_the_command_refuses_an_unknown_name_in_one_line(capsys) -> None:
-    assert run(["diagnose", "kharaz-2001-oblique", "--assume", "drag", "--quiet"]) == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
-    assert "assume" in line
-    assert "half-space-waves" in line
