@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -67,6 +67,7 @@ class Ranking:
     - `singles`, `pairs`: full fits, best first.
     - `excluded`: mechanism to the reason why arithmetic rules it out.
     - `nameless`: what a verdict has no name for, and ln B of each against the baseline.
+    - `unfitted`: pairs without a full fit: ln B against the baseline by the sum of their effects.
     """
 
     problem: Problem
@@ -77,6 +78,7 @@ class Ranking:
     pairs: tuple[Fit, ...]
     excluded: dict[str, str]
     nameless: tuple[Nameless, ...] = ()
+    unfitted: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def fits(self) -> tuple[Fit, ...]:

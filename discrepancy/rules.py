@@ -116,16 +116,12 @@ class DiagnosisRules:
         "a pair's prior is some e^-4 of a single's: with less it cannot lead",
     )  # fmt: skip
     paired: int = rule(
-        4, "leading pairs that are fitted, by the sum of their effects [-]",
-        "chosen; no measurement is kept",
+        6, "pairs that are fitted, if they lead by the sum of their effects [-]",
+        "TODO",
     )  # fmt: skip
     partners: int = rule(
-        3, "partners of the leading mechanism that are fitted with it [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    mixed: int = rule(
-        2, "the same of a mechanism and a wrong number [-]",
-        "chosen: a quarter of what two mechanisms get",
+        3, "leading mechanisms beside whose fits every other explanation is screened [-]",
+        "TODO",
     )  # fmt: skip
     pair_step: float = rule(
         0.12,

@@ -98,11 +98,16 @@ def odds_of(
     for label, gain in gained.items():
         names[label] = () if label == BASELINE else tuple(label.split("+"))
         log[label] = log_prior(names[label], share) + tempered(gain)
+    beside = dict(beside or {})
+    for label in ranking.unfitted:
+        # fits as well as the better of the two, until it is fitted
+        own = [beside[name] for name in names[label] if name in beside]
+        beside[label] = min(own, default=0.0)
     unseen = [
         log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0)
-        for label, odds in (beside or {}).items()
+        for label, odds in beside.items()
     ]
-    for label, odds in (beside or {}).items():
+    for label, odds in beside.items():
         log[label] -= max(odds, 0.0)
     log[OUTSIDE], alike = _outside(ranking, log)
     log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *unseen]))
@@ -114,6 +119,7 @@ def odds_of(
 def gains(ranking: Ranking) -> dict[str, float]:
     """Return the gain in ln evidence of every explanation, by its screening where not fitted."""
     found = {s.mechanism.name: s.log_bayes for s in ranking.screened}
+    found |= ranking.unfitted
     return found | {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
 
 

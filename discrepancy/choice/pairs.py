@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import logsumexp
@@ -19,65 +20,95 @@ from ..inference.together import mutual
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 from ..rules import RULES
 from ..unknowns.wrong_number import is_wrong
+from .odds import BASELINE, gains, log_prior, prior_shares, tempered
 
 # limit: places of each mechanism in the search for pairs [-]; a pair takes their square
 _PLACES = 48
+
+# limit: places of one beside a fit of the other [-]; time
+_BESIDE = 400
+
+
+class _Candidate(NamedTuple):
+    """Two by the sum of their effects: ln B over the baseline, and where in their priors."""
+
+    one: Screened
+    two: Screened
+    gain: float
+    place: Array
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Of both."""
+        return self.one.mechanism.name, self.two.mechanism.name
 
 
 def with_pairs(
     simulator: Simulator, ranking: Ranking, *, progress: Progress = lambda _: None
 ) -> Ranking:
-    """Fit the leading pairs, to the problem that the singles were fitted to."""
+    """Screen all pairs, one of them a mechanism, and fit those that lead by it.
+
+    What leads of them is fitted, to the problem that the singles were fitted to; the rest count by
+    their screening.
+    """
     simulator = simulator.of(ranking.problem)
-    pairs = []
-    physics = [s for s in ranking.screened if not is_wrong(s.mechanism)]
-    numbers = [s for s in ranking.screened if is_wrong(s.mechanism)]
-    single = next((f for f in ranking.singles if not is_wrong(f.mechanisms[0])), None)
-    number = next((f for f in ranking.singles if is_wrong(f.mechanisms[0])), None)
-    found = {
-        (one.mechanism.name, two.mechanism.name): (one, two, place)
-        for one, two, place in (
-            *_leading_pairs(ranking, physics),
-            *_partners(ranking, single, physics, RULES.partners),
-            # a number beside the leading mechanism, and mechanisms beside the leading number
-            *_partners(ranking, single, numbers, RULES.mixed),
-            *_partners(ranking, number, physics, RULES.mixed),
-        )
-    }  # fmt: skip
-    for one, two, place in found.values():
-        progress(f"fitting {one.mechanism.name} with {two.mechanism.name}")
-        near = [f for f in ranking.singles if f.mechanisms[0] in (one.mechanism, two.mechanism)]
+    share = prior_shares([s.mechanism for s in ranking.screened])
+
+    def weight(names: Sequence[str], gain: float) -> float:
+        return log_prior(names, share) + tempered(gain)
+
+    gained = gains(ranking)
+    least = max(weight([k for k in (name,) if k != BASELINE], x) for name, x in gained.items())
+    order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
+    pairs: list[Fit] = []
+    best = -math.inf
+    for c in order:
+        worth = weight(c.names, c.gain)
+        if worth < least - RULES.second or (len(pairs) >= RULES.paired and worth < best):
+            break
+        progress(f"fitting {c.names[0]} with {c.names[1]}")
+        near = [f for f in ranking.singles if f.mechanisms[0].name in c.names]
         start = max(near, key=lambda f: f.log_evidence, default=ranking.base)
-        both = PairEffect(simulator, one, two)
-        pairs.append(fit_anchored(simulator, both.mechanisms, both, start=start, place=place))
-    least = max((f.log_evidence for f in ranking.singles), default=0.0)
-    if max((f.log_evidence for f in pairs), default=-math.inf) > least + RULES.second:
+        both = PairEffect(simulator, c.one, c.two)
+        pairs.append(fit_anchored(simulator, both.mechanisms, both, start=start, place=c.place))
+        own = pairs[-1].log_evidence - ranking.base.log_evidence
+        best = max(best, weight(c.names, own))
+    lead = max((f.log_evidence for f in ranking.singles), default=0.0)
+    if max((f.log_evidence for f in pairs), default=-math.inf) > lead + RULES.second:
         pairs = sharpened_leading(simulator, pairs, ranking.base, most=1, rounds=2)
-    return replace(ranking, pairs=tuple(pairs))
+    fitted = {f.name for f in pairs}
+    unfitted = {"+".join(c.names): c.gain for c in order}
+    return replace(
+        ranking, pairs=tuple(pairs),
+        unfitted={k: gain for k, gain in unfitted.items() if k not in fitted},
+    )  # fmt: skip
 
 
-def _leading_pairs(
-    ranking: Ranking, among: Sequence[Screened]
-) -> list[tuple[Screened, Screened, Array]]:
-    """Return the best pairs by the sum of their effects, and where in their priors they fit."""
+def _candidates(ranking: Ranking) -> Iterable[_Candidate]:
+    """Every pair, at the place where the sum of its effects does best."""
+    found: dict[tuple[str, str], _Candidate] = {}
+    leads = [f for f in ranking.singles if not is_wrong(f.mechanisms[0])][: RULES.partners]
+    leads += [f for f in ranking.singles if is_wrong(f.mechanisms[0])][:1]
+    for c in (*_sums(ranking), *(c for lead in leads for c in _beside(ranking, lead))):
+        if c.names not in found or found[c.names].gain < c.gain:
+            found[c.names] = c
+    return found.values()
+
+
+def _sums(ranking: Ranking) -> Iterable[_Candidate]:
+    """Two mechanisms beside the stated numbers."""
+    among = [s for s in ranking.screened if not is_wrong(s.mechanism)]
     linear, w = ranking.stated.linear, ranking.stated.linear.white(ranking.stated.residual)
     thin = [np.arange(0, len(s.effect), max(len(s.effect) // _PLACES, 1)) for s in among]
     whites = [linear.white(s.effect[t]) for s, t in zip(among, thin, strict=True)]
-    scored = []
     own = [e @ w - 0.5 * np.sum(e**2, axis=1) for e in whites]
-    alone = max((_mean(x) for x in own), default=0.0)
+    off = ranking.stated.log_evidence - ranking.base.log_evidence
     for i, j in itertools.combinations(range(len(whites)), 2):
         ratio = own[i][:, None] + own[j][None, :] - whites[i] @ whites[j].T
-        evidence = _mean(ratio)
-        if evidence > alone + RULES.second:
-            scored.append((evidence, i, j, np.unravel_index(int(np.argmax(ratio)), ratio.shape)))
-    scored.sort(key=lambda x: -x[0])
-    found = []
-    for _, i, j, (p, q) in scored[: RULES.paired]:
+        p, q = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
         one, two = among[i], among[j]
         place = np.concatenate([one.grid.places()[thin[i][p]], two.grid.places()[thin[j][q]]])
-        found.append((one, two, place))
-    return found
+        yield _Candidate(one, two, _mean(ratio) + off, place)
 
 
 def _mean(log_ratio: Array) -> float:
@@ -85,29 +116,26 @@ def _mean(log_ratio: Array) -> float:
     return float(logsumexp(log_ratio)) - math.log(log_ratio.size)
 
 
-def _partners(
-    ranking: Ranking, lead: Fit | None, among: Sequence[Screened], most: int
-) -> list[tuple[Screened, Screened, Array]]:
-    """Return a leading explanation with those that explain most of what it leaves."""
-    if lead is None:
-        return []
+def _beside(ranking: Ranking, lead: Fit) -> Iterable[_Candidate]:
+    """A fitted explanation with each other one, of what it leaves."""
     order = [s.mechanism.name for s in ranking.screened]
-    own = ranking.screened[order.index(lead.name)]
+    at = order.index(lead.name)
+    own = ranking.screened[at]
     white = lead.linear.white(lead.residual)
-    scored: list[tuple[float, Screened, Array]] = []
-    for s in (s for s in among if s is not own):
-        e = lead.linear.white(s.effect)
+    gain = lead.log_evidence - ranking.base.log_evidence
+    for k, s in enumerate(ranking.screened):
+        if s is own or (is_wrong(s.mechanism) and is_wrong(own.mechanism)):
+            continue
+        thin = np.arange(0, len(s.effect), max(len(s.effect) // _BESIDE, 1))
+        e = lead.linear.white(s.effect[thin])
         ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1)
-        if _mean(ratio) > RULES.second:
-            scored.append((_mean(ratio), s, s.grid.places()[ratio.argmax()]))
-    found = []
-    for _, s, place in sorted(scored, key=lambda x: -x[0])[:most]:
-        both = sorted(
-            [(s, place), (own, lead.place)], key=lambda x: order.index(x[0].mechanism.name)
+        place = s.grid.places()[thin[ratio.argmax()]]
+        first, second = ((own, lead.place), (s, place))
+        if k < at:
+            first, second = second, first
+        yield _Candidate(
+            first[0], second[0], gain + _mean(ratio), np.concatenate([first[1], second[1]])
         )
-        (one, first), (two, second) = both
-        found.append((one, two, np.concatenate([first, second])))
-    return found
 
 
 @dataclass(frozen=True, eq=False)

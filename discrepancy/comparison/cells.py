@@ -78,13 +78,20 @@ class _Mean(NamedTuple):
 class _Repeats(NamedTuple):
     """Repeats of one observable at one condition, at the condition's mean speed: (n,) each.
 
-    `trial` is the row of trials.csv, `place` the place in the order of testing from 0 to 1.
+    `trial` is the row of trials.csv, `place` the place in the order of testing from 0 to 1; `std`
+    is that of the reading, `apart` that by which repeats differ: with the error of their speeds,
+    which moved the value to the mean speed.
     """
 
     trial: Indices
     place: Array
     value: Array
     std: Array
+    apart: Array
+
+    def take(self, which: Mask) -> _Repeats:
+        """Return some of them."""
+        return _Repeats(*(column[which] for column in self))
 
 
 class _Compared(NamedTuple):
@@ -122,7 +129,7 @@ def cells_of(
     text = f"{dropped} single values lie far off their repeats and were left out"
     notes = (text,) if dropped else ()
     drifts = [
-        drift_of(n, [(r.place, r.value, r.std) for r in one.repeats], observables=len(found))
+        drift_of(n, [(r.place, r.value, r.apart) for r in one.repeats], observables=len(found))
         for n, one in found.items()
     ]
     followed = tuple(_followed(found, varied))
@@ -161,7 +168,7 @@ def _followed(
     for column, entries in varied.items():
         for name, one in found.items():
             repeats = [
-                Entries(tuple(entries[i] for i in r.trial), r.value, r.std) for r in one.repeats
+                Entries(tuple(entries[i] for i in r.trial), r.value, r.apart) for r in one.repeats
             ]
             seen = followed_of(column, name, repeats, tested=len(found) * len(varied))
             if seen is not None:
@@ -172,7 +179,7 @@ def _compared(
     name: str, read: Readings, speeds: Array, place: Array, conditions: Sequence[Condition]
 ) -> _Compared:
     parted = [_repeats(name, read, speeds, place, c) for c in conditions]
-    kept = [_kept(r.value, r.std) for r in parted]
+    kept = [_kept(r.value, r.apart) for r in parted]
     total, dropped = sum(len(k) for k in kept), sum(int(np.sum(~k)) for k in kept)
     if dropped > max(1.0, RULES.wild * total):
         # so many are no slips: their scatter is the noise
@@ -182,11 +189,11 @@ def _compared(
     for number, (all_of, keep) in enumerate(zip(parted, kept, strict=True)):
         if not keep.any():
             continue
-        r = _Repeats(all_of.trial[keep], all_of.place[keep], all_of.value[keep], all_of.std[keep])
+        r = all_of.take(keep)
         repeats.append(r)
         weight = 1.0 / r.std**2
         mean = float(np.sum(weight * r.value) / np.sum(weight))
-        squares += float(np.sum(((r.value - mean) / r.std) ** 2))
+        squares += float(np.sum(((r.value - mean) / r.apart) ** 2))
         degrees += len(keep[keep]) - 1
         std = float(np.sum(weight) ** -0.5)
         means.append(_Mean(number, name, mean, std, int(keep.sum())))
@@ -211,8 +218,11 @@ def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Conditio
     s = std[index] / np.abs(values[index]) if log else std[index]
     # with the power that a plastic contact has
     mean = c.speed if c.press is None else c.press.load
-    y = y - _power(name, y) * np.log(speeds[index] / mean)
-    return _Repeats(index, place[index], y, s)
+    power = _power(name, y)
+    y = y - power * np.log(speeds[index] / mean)
+    # a height that was set once is off for all alike
+    off = 0.0 if c.setting else c.speed_spread * math.sqrt(len(c.trials))
+    return _Repeats(index, place[index], y, s, np.hypot(s, power * off))
 
 
 def _rms(values: Sequence[float]) -> float:

@@ -42,6 +42,20 @@ def test_repeats_tell_their_own_scatter_from_nine_on(toy) -> None:
     assert [wider(8), wider(9)] == [False, True]
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_repeats_differ_by_the_error_of_their_speeds_too(toy, known) -> None:
+    """Speeds read to 1 %, a spin to 0.01 %: what moves it to the mean speed scatters by 1 %."""
+    n = 12
+    speed = 2.0 * (1.0 + 0.01 * np.resize([1.0, -1.0], n))
+    spread = 0.01 / math.sqrt(n) if known else 0.0
+    c = replace(toy.condition(2.0), trials=tuple(range(n)), speed_spread=spread)
+    read_ = {"rebound_spin_rad_s": Readings(np.full(n, 100.0), np.full(n, 0.01))}
+    found = cells_of(read_, speed, np.arange(n) + 0.0, [c], {})
+    assert bool(found.scatters) is not known
+    # the error of the mean speed is an unknown of its own: that of the readings is left
+    assert bool(found.cells.std[0] < 0.01) is known
+
+
 def test_the_noise_of_a_curve_is_that_of_forty_copies() -> None:
     calls = []
 
