@@ -104,8 +104,7 @@ def odds_of(
         own = [beside[name] for name in names[label] if name in beside]
         beside[label] = min(own, default=0.0)
     unseen = [
-        log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0)
-        for label, odds in beside.items()
+        log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0) for label, odds in beside.items()
     ]
     for label, odds in beside.items():
         log[label] -= max(odds, 0.0)

@@ -91,7 +91,10 @@ class _Repeats(NamedTuple):
 
     def take(self, which: Mask) -> _Repeats:
         """Return some of them."""
-        return _Repeats(*(column[which] for column in self))
+        return _Repeats(
+            self.trial[which], self.place[which], self.value[which], self.std[which],
+            self.apart[which],
+        )  # fmt: skip
 
 
 class _Compared(NamedTuple):

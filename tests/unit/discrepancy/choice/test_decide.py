@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -214,6 +215,18 @@ def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy
     assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / 200.0)
     outside = PRIORS[OUTSIDE] * (200.0 * found.probability["a"] + found.probability["b"])
     assert found.outside == pytest.approx(outside, rel=1e-3)
+
+
+def test_a_pair_without_a_fit_counts_by_its_screening_and_fits_as_its_better_single(toy) -> None:
+    ranking = replace(singles_of(toy, 30.0, 29.0), unfitted={"a+b": 40.0})
+    one, refuted = (
+        odds_of(ranking, beside={"a": x, "b": y}).probability
+        for x, y in ((math.log(50.0), 0.0), (math.log(200.0), math.log(50.0)))
+    )
+    prior = PRIORS["second"] / 2.0
+    ratio = prior * math.exp(tempered(40.0) - tempered(29.0))
+    assert one["a+b"] / one["b"] == pytest.approx(ratio)
+    assert refuted["a+b"] / refuted["b"] == pytest.approx(ratio)
 
 
 def test_a_drift_that_is_sure_leaves_the_rest_to_something_outside(toy) -> None:

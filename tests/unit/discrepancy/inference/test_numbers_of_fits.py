@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
+from dentscope.discrepancy.choice.pairs import PairEffect, _candidates, with_pairs
 from dentscope.discrepancy.inference.derivatives import _beside
 from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, tried_steps
 from dentscope.discrepancy.inference.grid import Axis, Grid
@@ -231,47 +231,51 @@ def screened_fully(toy, effect):
     )
 
 
-def paired(toy, data, effects, *, singles=()):
-    """Names of the pairs that are fitted to data."""
+def paired(toy, data, effects, *, singles=(), hidden=None):
+    """Names of the pairs that are fitted to data, and what the others gain by screening."""
     simulator, asked = toy.Simulator(toy.problem(data)), []
     screened = [screened_fully(toy, e) for e in effects]
+    if hidden is not None:
+        screened = [replace(s, effect=np.where(hidden[:, None], 0.0, s.effect)) for s in screened]
     ranking = toy.ranking_of(
         simulator.problem, toy.fit_of(data), singles=singles, screened=screened
     )
-    with_pairs(simulator, ranking, progress=asked.append)
-    return [a.removeprefix("fitting ") for a in asked]
+    found = with_pairs(simulator, ranking, progress=asked.append)
+    return [a.removeprefix("fitting ") for a in asked], found.unfitted
 
 
-def test_the_four_best_pairs_are_fitted(toy) -> None:
+def test_the_six_best_pairs_are_fitted_and_the_others_screened(toy) -> None:
     effects, shapes = library_of(toy, *[40.0] * 5)
-    data = 0.5 * np.sum(shapes, axis=0)
-    # ten could be; without a single none is a partner
-    assert len(paired(toy, data, effects)) == 4
+    fitted, screened = paired(toy, 0.5 * np.sum(shapes, axis=0), effects)
+    assert (len(fitted), len(screened)) == (6, 4)
 
 
-def test_three_partners_of_the_leading_mechanism_are_fitted_too(toy) -> None:
-    """What the lead leaves speaks for the last three, which no pair of the data does."""
-    effects, shapes = library_of(toy, *[40.0] * 8)
-    data = np.array(shapes[0]) + np.array(shapes[1])
-    left = 0.5 * np.sum(shapes[4:], axis=0)
-    lead = replace(toy.fit_of(data, effects[0]), residual=left)
-    found = paired(toy, data, effects, singles=[lead])
-    assert sum(pair in {f"m0 with m{k}" for k in (4, 5, 6, 7)} for pair in found) == 3
+def test_pairs_are_screened_beside_the_three_leading_mechanisms(toy) -> None:
+    """Each leaves 20 of the last cell, of which the last effect explains half: 200 nats."""
+    effects, shapes = library_of(toy, *[40.0] * 6)
+    singles = [
+        replace(toy.fit_of([0.0] * 8, e, lift=-k), residual=0.5 * np.array(shapes[5]))
+        for k, e in enumerate(effects[:4])
+    ]
+    base = toy.fit_of([0.0] * 8)
+    given = toy.ranking_of(
+        None, base, singles=singles, screened=[screened_fully(toy, e) for e in effects]
+    )
+    gained = {c.names: c.gain for c in _candidates(given)}
+    # over an even prior: the width of a posterior of 1/40
+    more = 0.5 * 20.0**2 + math.log(math.sqrt(2.0 * math.pi) / 40.0)
+    seen = [gained[f"m{k}", "m5"] - singles[k].log_evidence + base.log_evidence for k in range(4)]
+    assert seen[:3] == pytest.approx([more] * 3, abs=0.02)
+    assert seen[3] < 0.0
 
 
 def test_pairs_are_sought_by_48_places_of_each(toy) -> None:
     """Every fifth of 241: where only the others hold an effect none is seen."""
     effects, shapes = library_of(toy, *[40.0] * 3)
     data = 0.5 * np.sum(shapes[:2], axis=0)
-    whole = [screened_fully(toy, e) for e in effects]
-    gone = np.arange(241) % 5 == 0
-    hidden = [replace(s, effect=np.where(gone[:, None], 0.0, s.effect)) for s in whole[:2]]
-    from dentscope.discrepancy.choice.pairs import _leading_pairs
-
-    ranking = toy.ranking_of(None, toy.fit_of(data), screened=[*hidden, whole[2]])
-    assert _leading_pairs(ranking, ranking.screened) == []
-    ranking = toy.ranking_of(None, toy.fit_of(data), screened=whole)
-    assert _leading_pairs(ranking, whole)[0][0].mechanism.name == "m0"
+    whole = paired(toy, data, effects)[0]
+    assert whole[0] == "m0 with m1"
+    assert paired(toy, data, effects, hidden=np.arange(241) % 5 == 0)[0] == []
 
 
 def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy) -> None:
