@@ -263,10 +263,6 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
 
 
 _LEFT = ("residual_flat_m", "residual_sphere_m")
-_SIGNED = (
-    "rebound_spin_rad_s", "tangential_rebound_m_s", "tangential_restitution",
-    "friction_impulse_ratio",
-)  # fmt: skip
 
 
 def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
@@ -291,7 +287,7 @@ def _reach(key: str, found: Impact) -> tuple[float, float]:
 
     No restitution rises above 1, nor the rebound above the approach, as far as they have not.
     """
-    if key in _SIGNED:
+    if key.startswith(("tangential", "rebound_spin")):
         return math.inf, math.inf
     value = float(getattr(found, key, math.inf))
     most = math.inf
