@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,9 +20,7 @@ def inverse(
     new: Annotated[
         bool, typer.Option("--new", help="Write a file to start from, inverse.toml by default.")
     ] = False,
-    out: Annotated[Path, folder_option("Folder for the figure and the CSV.")] = Path(
-        "build/impact"
-    ),
+    out: Annotated[Path, folder_option("Folder for the CSV.")] = Path("build/impact"),
 ) -> None:
     """Infer duration and mean force from depth, sliding length and restitution (chapter 5)."""
     if new:
@@ -40,10 +37,9 @@ def inverse(
     read_toml(file)  # what is no TOML is told before the simulation is loaded
     from ..dynamics.files.inverse_file import read_inverse
     from ..dynamics.files.tables import write_csv
-    from ..dynamics.told.draw import draw_alpha
 
     console = new_console()
-    rod, rows = read_inverse(file)
+    rows = read_inverse(file)
     head, cells = _shown(rows)
     show_table(
         console, head, cells,
@@ -55,14 +51,13 @@ def inverse(
     for row in rows:
         for line in row.inferred.objections:
             console.print(f"  {row.name}: {line}", soft_wrap=True)
-    stem = f"{file.stem}-inverse"
-    write_csv(out / f"{stem}.csv", [_csv_row(row) for row in rows])
-    draw_alpha(rod, (0.0, 0.1, 0.2, 0.5, 1.0), out / f"{stem}-alpha.png")
-    console.print(f"written: {out / f'{stem}.csv'}, {out / f'{stem}-alpha.png'}", soft_wrap=True)
+    written = out / f"{file.stem}-inverse.csv"
+    write_csv(written, [_csv_row(row) for row in rows])
+    console.print(f"written: {written}", soft_wrap=True)
 
 
 def _shown(rows: list[Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """The table: what is inferred, and what was printed beside where a trial says that."""
+    """The table of what is inferred."""
     head: tuple[str, ...] = (
         "trial", "alpha", "to last\nparting [ms]", "mean\nforce [N]",
         "back at\nsurface [ms]", "mean\nforce [N]",
@@ -75,15 +70,6 @@ def _shown(rows: list[Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         )
         for row in rows
     ]  # fmt: skip
-    if any(math.isfinite(x) for row in rows for x in (row.printed_duration, row.printed_force)):
-        head = (*head, "printed [ms]", "printed [N]")
-        cells = [
-            (
-                *cell, _or_dash(row.printed_duration * 1e3, "{:.2f}"),
-                _or_dash(row.printed_force, "{:.0f}"),
-            )
-            for cell, row in zip(cells, rows, strict=True)
-        ]  # fmt: skip
     return head, cells
 
 
@@ -91,10 +77,6 @@ def _cell(row: Any, name: str, scale: float, form: str) -> str:
     """A number, and what the standard deviations of the rod make of it."""
     shown, std = form.format(scale * getattr(row.inferred, name)), row.std.get(name, 0.0)
     return f"{shown} ± {scale * std:.2g}" if std > 0.0 else shown
-
-
-def _or_dash(value: float, form: str) -> str:
-    return form.format(value) if value == value else "-"
 
 
 def _csv_row(row: Any) -> dict[str, Any]:

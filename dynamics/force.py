@@ -24,12 +24,11 @@ RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
 DAMPING, RADIATION, SHAPE, RETURN = range(6, 10)
 N_FORCE = 10
 
-# The branch vector: what `set_peak` writes, the smooth stretch of the loading curve, the contact
-# radius at the peak and whether the depth falls; flat, radius and modulus of a cut tip that has
-# stayed elastic, else a flat of 0.
-SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER, PEAK_RADIUS, RECEDING = range(7, 13)
-CUT_FLAT, CUT_RADIUS, CUT_MODULUS = range(13, 16)
-N_BRANCH = 16
+# The branch vector: what `set_peak` writes, the contact radius at the peak and whether the depth
+# falls; flat, radius and modulus of a cut tip that has stayed elastic, else a flat of 0.
+PEAK_FORCE, POWER, PEAK_RADIUS, RECEDING = range(7, 11)
+CUT_FLAT, CUT_RADIUS, CUT_MODULUS = range(11, 14)
+N_BRANCH = 14
 
 # What the factors multiply, column by column: loading force and contact radius at the depth; of a
 # peak at it, elastic recovery, odds of the sphere's share of what stays, exponent of the recovery.
@@ -151,7 +150,7 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     """Write into `branch` what the unloading from `peak` needs.
 
     Entries: peak, residual depth of sphere and flat, force scale, law's peak and residual depth,
-    depth scale, (two of the caller), the force at the peak and the power of the law's recovery.
+    depth scale, the force at the peak and the power of the law's recovery.
     """
     shift = force[FLAT] * force[FLAT] / (2.0 * force[RADIUS])
     law_peak = peak + shift
@@ -224,10 +223,9 @@ _SLOPE_STEP = RULES.slope_step
 
 
 @njit(cache=True, _nrt=False)
-def loading_window(depth, first, last):
-    """Depths about one on loading between which its slope is taken, from `first` to `last`."""
-    low, high = max(depth * (1.0 - _SLOPE_STEP), first), min(depth * (1.0 + _SLOPE_STEP), last)
-    return low, max(low, high)
+def loading_window(depth):
+    """Depths about one on loading between which its slope is taken."""
+    return depth * (1.0 - _SLOPE_STEP), depth * (1.0 + _SLOPE_STEP)
 
 
 @njit(cache=True, _nrt=False)
@@ -236,161 +234,6 @@ def unloading_window(branch, depth):
     rest = branch[1] + branch[2]
     step = _SLOPE_STEP * max(depth - rest, 0.0)
     return depth - step, min(depth + step, max(branch[0], depth))
-
-
-@njit(cache=True, _nrt=False)
-def _log_force(loading, par, force, factors, x):
-    return math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
-
-
-@njit(cache=True, _nrt=False)
-def _jump_between(loading, par, force, factors, low, high):
-    """Logarithm of the depth just above a jump between two others; nan without one."""
-    f_low = _log_force(loading, par, force, factors, low)
-    f_high = _log_force(loading, par, force, factors, high)
-    for _ in range(60):
-        x = 0.5 * (low + high)
-        f = _log_force(loading, par, force, factors, x)
-        if abs(f - f_low) > abs(f_high - f):
-            high, f_high = x, f
-        else:
-            low, f_low = x, f
-        if high - low < 3e-15 * abs(x):
-            break
-    return high if abs(f_high - f_low) > 1e-9 else math.nan
-
-
-@njit(cache=True)
-def _meeting_point(loading, par, force, factors, x):
-    """Logarithm of the depth at which the cubics through either side of a kink near x meet."""
-    h = 4e-4
-    sides = np.empty((2, 4))
-    for k in range(4):
-        sides[0, k] = _log_force(loading, par, force, factors, x - 1e-5 - k * h)
-        sides[1, k] = _log_force(loading, par, force, factors, x + 1e-5 + k * h)
-    low, high = -1e-5, 1e-5
-    g_low = 0.0
-    for i in range(40):
-        t = low if i == 0 else high if i == 1 else 0.5 * (low + high)
-        g = 0.0
-        for side in range(2):
-            u = (-1e-5 - t if side == 0 else t - 1e-5) / h
-            y0, y1, y2, y3 = sides[side]
-            d1, d2, d3 = y1 - y0, y2 - 2.0 * y1 + y0, y3 - 3.0 * y2 + 3.0 * y1 - y0
-            value = y0 + u * (d1 + (u - 1.0) / 2.0 * (d2 + (u - 2.0) / 3.0 * d3))
-            g += value if side == 0 else -value
-        if i == 0:
-            g_low = g
-        elif i == 1:
-            if (g < 0.0) == (g_low < 0.0):
-                return x
-        elif (g < 0.0) == (g_low < 0.0):
-            low = t
-        else:
-            high = t
-    return x + 0.5 * (low + high)
-
-
-@njit(cache=True)
-def _kink_between(loading, par, force, factors, low, high):
-    """Logarithm of the depth of a kink (a jump of the slope); nan without one.
-
-    To about 1e-10 for a finite jump, to rounding for a slope that is infinite on one side.
-    """
-    while high - low > 4e-15 * abs(low):
-        h = 0.25 * (high - low)
-        best, place = -1.0, 0
-        for k in range(1, 4):
-            x = low + k * h
-            bend = _log_force(loading, par, force, factors, x - h)
-            bend += _log_force(loading, par, force, factors, x + h)
-            bend = abs(bend - 2.0 * _log_force(loading, par, force, factors, x))
-            if bend > best:
-                best, place = bend, k
-        if best < 1e-12:
-            break
-        low, high = low + (place - 1) * h, low + (place + 1) * h
-    x, h = 0.5 * (low + high), 1e-4
-    middle = 2e-6
-    left = _log_force(loading, par, force, factors, x - middle)
-    left -= _log_force(loading, par, force, factors, x - h)
-    right = _log_force(loading, par, force, factors, x + h)
-    right -= _log_force(loading, par, force, factors, x + middle)
-    if abs(right - left) <= 2e-3 * h:
-        return math.nan
-    return _meeting_point(loading, par, force, factors, x)
-
-
-@njit(cache=True)
-def _bend_between(loading, par, force, factors, low, high):
-    """Logarithm of the depth at which the curvature jumps, to about 1e-5; nan without one.
-
-    Yield without a jump of the slope: a step across it has an error that its estimate can miss.
-    """
-    level = np.empty(17)
-    while True:
-        h = (high - low) / 16.0
-        for k in range(17):
-            level[k] = _log_force(loading, par, force, factors, low + k * h)
-        best, place = -1.0, 0
-        for k in range(2, 14):
-            before = level[k] - 2.0 * level[k - 1] + level[k - 2]
-            after = level[k + 3] - 2.0 * level[k + 2] + level[k + 1]
-            if abs(after - before) > best:
-                best, place = abs(after - before), k
-        low, high = low + (place - 1) * h, low + (place + 2) * h
-        if h < 1e-5:
-            break
-    x = 0.5 * (low + high)
-    curvature = np.empty(4)
-    h = 2e-4
-    for k in range(4):
-        # two places on each side of x
-        at = x + (-3.0, -1.2, 1.2, 3.0)[k] * h
-        bend = _log_force(loading, par, force, factors, at - h)
-        bend += _log_force(loading, par, force, factors, at + h)
-        curvature[k] = (bend - 2.0 * _log_force(loading, par, force, factors, at)) / h**2
-    jump = abs(curvature[2] - curvature[1])
-    smooth = abs(curvature[1] - curvature[0]) + abs(curvature[3] - curvature[2])
-    return x if jump > 1e-2 + 3.0 * smooth else math.nan
-
-
-@njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
-def find_breaks(loading, par, force, factors):
-    """Depths at which the loading force, its slope or its curvature jumps, rising.
-
-    Published fits do so at the borders of their ranges. A logarithmic scan for uneven slopes, each
-    then located; an integrator that knows these depths can end a step on them.
-    """
-    n = 240
-    first, last = math.log(1e-9 * force[RADIUS]), math.log(force[RADIUS])
-    step = (last - first) / n
-    level = np.empty(n + 1)
-    for i in range(n + 1):
-        level[i] = _log_force(loading, par, force, factors, first + i * step)
-    found = np.empty(32)
-    count = 0
-    for i in range(2, n - 3):
-        rise = level[i + 1] - level[i]
-        around = 0.5 * (level[i] - level[i - 1] + level[i + 2] - level[i + 1])
-        before = level[i] - 2.0 * level[i - 1] + level[i - 2]
-        after = level[i + 3] - 2.0 * level[i + 2] + level[i + 1]
-        low, x = first + i * step, math.nan
-        if count == len(found):
-            break
-        if abs(rise - around) >= 1e-4:
-            x = _jump_between(loading, par, force, factors, low, low + step)
-            if math.isnan(x):
-                x = _kink_between(loading, par, force, factors, low, low + step)
-        if math.isnan(x) and abs(after - before) > 3e-5:
-            x = _bend_between(loading, par, force, factors, low - step, low + 2.0 * step)
-            # neighbouring cells see the same bend
-            if not low <= x < low + step:
-                x = math.nan
-        if not math.isnan(x) and (count == 0 or math.exp(x) > found[count - 1] * (1.0 + 1e-5)):
-            found[count] = math.exp(x)
-            count += 1
-    return found[:count].copy()
 
 
 @njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)

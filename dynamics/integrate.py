@@ -23,7 +23,7 @@ from .walk import layout as c
 _HISTORY_ROWS = 4000
 
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
-_SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
+_STILL = np.empty((3, 0))
 _FRESH = Spot().row()
 _FRESH.flags.writeable = False
 
@@ -52,20 +52,14 @@ class Arrays:
     par: Array
     force: Array
     factors: Array
-    breaks: Array
     body: Array
     surface: Array
     omega: Array
     psi: Array
 
 
-def arrays_of(
-    scene: Scene, settings: Settings = Settings(), *, breaks: Array | None = None
-) -> Arrays:
-    """Return the vectors of a scene; the flow-stress seam is applied here.
-
-    `breaks` are the depths at which the loading curve breaks, found by a scan when left out.
-    """
+def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
+    """Return the vectors of a scene; the flow-stress seam is applied here."""
     law, striker, approach = scene.law, scene.striker, scene.approach
     pair = scene.pair
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
@@ -109,10 +103,8 @@ def arrays_of(
     body[c.SCAN_STEP] = scene.instrument.scan_step
     body[c.SCAN_LEVEL] = scene.instrument.scan_height
     body[c.LONGEST] = math.inf
-    if breaks is None:
-        breaks = _breaks(law, par, force, factors)
     surface = _FRESH if scene.spot == Spot() else scene.spot.row()
-    return Arrays(par, force, factors, breaks, body, surface, omega, psi)
+    return Arrays(par, force, factors, body, surface, omega, psi)
 
 
 def _factors(scene: Scene) -> Array:
@@ -162,16 +154,15 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
 
 
 def _given(rows: Sequence[Arrays]) -> c.Given:
-    """Return scenes of one law as the compiled integrator takes them; the borders are the first's.
+    """Return scenes of one law as the compiled integrator takes them.
 
     Factors and modes have to be of one length.
     """
-    keys = [key for key in c.Given._fields if key != "breaks"]
-    columns = {key: [getattr(a, key) for a in rows] for key in keys}
+    columns = {key: [getattr(a, key) for a in rows] for key in c.Given._fields}
     # fresh metal is one row for all
     fresh = all(surface is _FRESH for surface in columns["surface"])
     columns["surface"] = [_FRESH] if fresh else columns["surface"]
-    return c.Given(breaks=rows[0].breaks, **{key: np.stack(one) for key, one in columns.items()})
+    return c.Given(**{key: np.stack(one) for key, one in columns.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,13 +216,10 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
 def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Array:
     """Integrate scenes of one law that may differ in all else; the fast path of a comparison.
 
-    Borders of a published fit are not located: a step that crosses one is repeated smaller, so
-    the law should be a smooth one.
-
     Returned: (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
     """
     out = np.full((len(scenes), c.N_OUT), np.nan)
-    rows = [arrays_of(scene, settings, breaks=_SMOOTH) for scene in scenes]
+    rows = [arrays_of(scene, settings) for scene in scenes]
     groups: dict[tuple[int, int], list[int]] = {}
     for i, a in enumerate(rows):
         groups.setdefault((len(a.factors), len(a.omega)), []).append(i)
@@ -240,16 +228,3 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
         _walked(scenes[0].law, _given([rows[i] for i in members]), found)
         out[members] = found
     return out
-
-
-_BREAKS: dict[tuple[str, bytes, bytes, bytes], Array] = {}
-
-
-def _breaks(law: ContactLaw, par: Array, force: Array, factors: Array) -> Array:
-    """Return the depths at which this loading curve breaks; the latest answers are kept."""
-    key = (law.name, par.tobytes(), force.tobytes(), factors.tobytes())
-    if key not in _BREAKS:
-        if len(_BREAKS) > 1000:
-            _BREAKS.clear()
-        _BREAKS[key] = fo.find_breaks(law.kernels.loading, par, force, factors)
-    return _BREAKS[key]

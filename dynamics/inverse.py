@@ -10,9 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.unstated import unstated_equal
 from .scene import Striker
@@ -61,11 +58,6 @@ def alpha(striker: Striker, angle: float, *, mu: float) -> float:
     """
     found = mobility(striker, angle)
     return found.tangential(mu) / found.normal(mu)
-
-
-def alpha_curve(striker: Striker, angles: Array, *, mu: float) -> Array:
-    """Return alpha over `angles` [rad] (Figure 5.3)."""
-    return np.array([alpha(striker, float(angle), mu=mu) for angle in angles])
 
 
 @unstated_equal

@@ -20,7 +20,6 @@ from .integrate import Settings, arrays_of
 from .scene import Scene
 from .tabulated.law_table import DEEPEST, SHALLOWEST
 
-_SMOOTH = np.empty(0)
 # limit: relative step at which the depth of a load is found [-]: round-off
 _CLOSE = 1e-12
 # limit: rounds of that search at most [-]: bisection of a double takes 60
@@ -151,7 +150,7 @@ def _load(scene: Scene) -> float:
 
 def _groups(scenes: Sequence[Scene]) -> Iterator[tuple[Any, list[int], list[Array]]]:
     """Yield kernels, places and stacked vectors of the scenes that can go together."""
-    rows = [arrays_of(scene, Settings(), breaks=_SMOOTH) for scene in scenes]
+    rows = [arrays_of(scene, Settings()) for scene in scenes]
     groups: dict[tuple[int, int], list[int]] = {}
     for i, a in enumerate(rows):
         groups.setdefault((len(a.factors), len(a.par)), []).append(i)

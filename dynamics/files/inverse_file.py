@@ -73,10 +73,6 @@ class _TrialTable(InputTable):
     """Depth of the crater."""
     sliding_length_m: float = Field(ge=1e-12, le=1.0)
     """Path of the touching point along the flat; a scar's length less its width is not it."""
-    printed_duration_s: float | None = None
-    """A published duration to show beside."""
-    printed_mean_force_N: float | None = None
-    """A published mean force to show beside."""
 
 
 class InverseFile(InputTable):
@@ -91,18 +87,16 @@ class InverseFile(InputTable):
 @unstated_equal
 @dataclass(frozen=True, slots=True)
 class InverseRow:
-    """One oblique impact: what was measured, what follows, what the thesis printed."""
+    """One oblique impact: what was measured, and what follows."""
 
     name: str
     measured: MeasuredScar
     inferred: Inferred
-    printed_duration: float = math.nan
-    printed_force: float = math.nan
     std: Mapping[str, float] = field(default_factory=dict)
     """By field of `Inferred`: what the standard deviations of the rod's numbers make of it."""
 
 
-def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
+def read_inverse(path: Path) -> list[InverseRow]:
     """Read an inverse file and infer each trial; every mistake is a line.
 
     A friction coefficient at which the tip sticks is one.
@@ -129,11 +123,10 @@ def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
         rows.append(
             InverseRow(
                 trial.trial or str(i), measured, inferred,
-                trial.printed_duration_s or math.nan, trial.printed_mean_force_N or math.nan,
                 _deviations(found.striker, measured),
             )
         )  # fmt: skip
-    return rod, rows
+    return rows
 
 
 def _check_striker(content: Mapping[str, Any], source: str) -> None:

@@ -34,8 +34,6 @@ _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 _CHECK = np.vander(_BETWEEN, _ORDER, increasing=True)
 _START, _BINS_PER_CELL = 24, 8
 
-"""Cells that are tried, halved ones counted; the smooth laws of this package take 1120 at most."""
-
 # limit: cells that are tried together [-]
 _AT_ONCE = 256
 

@@ -56,7 +56,6 @@ SWEPT = ("restitution", _CRATER, "contact_time_s", "peak_force_N")
 """The numbers of a sweep that have a band."""
 # limit: conditions up to which a sweep has a band [-]: each takes some ten impacts in steps
 MOST_SWEPT = 400
-"""Conditions up to which a sweep has one: each takes some ten impacts in steps."""
 PRESSURE = "largest_mean_pressure_Pa"
 """The one number beside those of `Impact`."""
 

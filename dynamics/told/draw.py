@@ -12,10 +12,8 @@ from typing import Any
 import numpy as np
 
 from ...core.observables import OBSERVABLES
-from ...core.output import figure, panels, write_figure
+from ...core.output import panels, write_figure
 from ..columns import Impacts
-from ..inverse import alpha_curve
-from ..scene import Striker
 
 # limit: relative difference that is none [-]: round-off
 _NONE = 1e-6
@@ -123,20 +121,3 @@ def _by_ratio(values: Sequence[float]) -> bool:
         return False
     steps = np.diff(np.log(given))
     return bool(np.ptp(steps) < 0.05 * abs(steps.mean()))
-
-
-def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None:
-    """Sliding per normal travel over the angle; above zero the tip sticks."""
-    made, axes = figure(1, 1, size=(6.5, 4.6))
-    angles = np.radians(np.linspace(0.2, 89.8, 400))
-    for mu in frictions:
-        values = alpha_curve(striker, angles, mu=mu)
-        jam = np.abs(np.diff(values, append=values[-1])) > 5.0
-        axes[0, 0].plot(np.degrees(angles), np.where(jam, np.nan, values), label=f"friction {mu:g}")
-    axes[0, 0].axhline(0.0, color="k", lw=0.8)
-    axes[0, 0].set(
-        xlabel="angle [degrees]", ylabel="alpha = A/B (below 0: sliding)", ylim=(-1.5, 1.5)
-    )
-    axes[0, 0].legend(fontsize=8)
-    axes[0, 0].grid(alpha=0.3)
-    write_figure(made, path, dpi=130)

@@ -18,7 +18,7 @@ from .step import STAGES, step
 
 @njit(cache=True, **PLAIN)
 def _fit_step(m, w):
-    """Shorten the next step to the longest allowed, to a border, or to the end of its variable."""
+    """Shorten the next step to the longest allowed, or to the end of its variable."""
     now, seen = w.now, w.seen
     variable, place, h = now[at.VARIABLE], now[at.AT], now[at.STEP]
     longest = m.body[at.LONGEST]
@@ -37,18 +37,7 @@ def _fit_step(m, w):
         # not past the turning point, which the rate comes to in one step
         room = -0.5 * seen[at.RATE] / seen[at.ACCELERATION]
         h = min(h, math.sqrt(place * place + room) - place)
-    # On loading by depth a step can end on the border of a stretch.
-    pressing = variable == at.BY_ROOT_DEPTH and now[at.PHASE] == at.LOAD
-    bordering = False
-    if pressing:
-        if seen[at.ACCELERATION] < 0.0:
-            room = -0.3 * seen[at.RATE] ** 2 / seen[at.ACCELERATION]
-            h = min(h, math.sqrt(place * place + room) - place)
-        border = math.sqrt(w.branch[fo.SEGMENT_HIGH])
-        bordering = place + 1.02 * h >= border
-        h = border - place if bordering else h
     landing = variable >= at.BY_ROOT_DEPTH and place + h <= 0.02 * place
-    now[at.PRESSING], now[at.BORDERING] = float64(pressing), float64(bordering)
     now[at.LANDING] = float64(landing)
     now[at.STEP] = -place if landing else h
 
@@ -66,11 +55,9 @@ def _give_way(m, w, error):
     h, variable, place, t_ref = now[at.STEP], now[at.VARIABLE], now[at.AT], w.scales[at.T_REF]
     h *= max(0.2, 0.9 * error**-0.125) if math.isfinite(error) else 0.1
     now[at.STEP] = h
-    pressing = now[at.PRESSING] > 0.0
     lost = variable == at.BY_RATE and -h < 1e-4 * place
-    lost = lost or (pressing and h < 1e-5 * max(place, 1e-3 * math.sqrt(w.scales[at.D_REF])))
     # The tip no longer leaves: depth cannot carry the motion any further.
-    stays = variable == at.BY_ROOT_DEPTH and not pressing and -h < 1e-5 * place
+    stays = variable == at.BY_ROOT_DEPTH and -h < 1e-5 * place
     if lost or stays:
         now[at.VARIABLE], now[at.FRESH], now[at.STEP] = at.BY_TIME, 1.0, 1e-3 * t_ref
         if stays:
@@ -91,7 +78,7 @@ def _go_on(w, grown):
         seen[j] = w.seen_new[j]
     for event in range(at.N_EVENTS):
         w.values[event] = w.values_new[event]
-    approaching, pressing = now[at.APPROACHING] > 0.0, now[at.PRESSING] > 0.0
+    approaching = now[at.APPROACHING] > 0.0
     if now[at.PHASE] == at.UNLOAD and now[at.SIMPLE] > 0.0 and variable == at.BY_TIME:
         now[at.FRESH] = float64(not approaching)
     if variable == at.BY_ROOT_TIME and now[at.SIMPLE] == 0.0:
@@ -100,11 +87,10 @@ def _go_on(w, grown):
         now[at.VARIABLE], now[at.STEP] = at.BY_TIME, span
         for j in range(len(w.z)):
             w.stages[0, j] /= place
-    if now[at.TURNING] > 0.0 and approaching and (variable < at.BY_ROOT_DEPTH or pressing):
+    if now[at.TURNING] > 0.0 and approaching and variable < at.BY_ROOT_DEPTH:
         span = grown if variable == at.BY_TIME else grown * (2.0 * now[at.AT] + grown)
-        span = span / seen[at.RATE] if pressing else span
         near, speed = -1.2 * seen[at.ACCELERATION] * span, w.scales[at.SPEED]
-        close = seen[at.RATE] < (0.6 * speed if pressing else min(0.45 * speed, near))
+        close = seen[at.RATE] < min(0.45 * speed, near)
         now[at.FRESH] = now[at.TO_RATE] = float64(close)
 
 
@@ -142,9 +128,7 @@ def advance(m, w):
         _go_on(w, grown)
     else:
         now[at.FRESH] = 1.0
-        if now[at.PRESSING] > 0.0:
-            now[at.STEP] = grown
-        elif now[at.VARIABLE] < at.BY_ROOT_DEPTH:
+        if now[at.VARIABLE] < at.BY_ROOT_DEPTH:
             # only friction and the surface bend sharply
             smooth = now[at.VARIABLE] == at.BY_TIME and event <= at.RETURNED
             now[at.STEP] = grown if smooth else min(grown, max(now[at.TAKEN], 0.5 * h))

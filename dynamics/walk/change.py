@@ -10,7 +10,7 @@ from .. import force as fo
 from .. import surface as su
 from . import layout as at
 from .contact import kinematics, law_radius, loading_radius, penetration, place_of
-from .events import event_slope, rest_friction, rubbing, set_segment, sliding_mode
+from .events import event_slope, rest_friction, rubbing, sliding_mode
 from .flight import TOUCHED, fly
 from .layout import PLAIN
 from .motion import derivative
@@ -210,10 +210,6 @@ def change(m, w, event):
     elif event == at.RELOAD:
         now[at.PHASE], now[at.VARIABLE] = at.LOAD, at.BY_TIME
         now[at.STEP], now[at.RECHECK] = 0.02 * w.scales[at.T_REF], 1.0
-        set_segment(m, w, w.branch[0])
-    elif event == at.BORDER:
-        now[at.RECHECK] = 1.0
-        set_segment(m, w, w.branch[fo.SEGMENT_HIGH])
     elif event == at.REVERSAL:
         now[at.SIDE] = -now[at.SIDE]
     elif event == at.REST or event == at.SLIDE:

@@ -124,11 +124,11 @@ def _sum_up(m, w):
 
 
 @njit(
-    types.void(LOADING, BRANCH, BRANCH, SPLIT, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX,
+    types.void(LOADING, BRANCH, BRANCH, SPLIT, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX,
                MATRIX, _MODES, WORK_TUPLE, _FLAGS, _PLACES, _PLACES, MATRIX, MATRIX, VECTOR),
     cache=True, nogil=True, _nrt=False, no_cfunc_wrapper=True,
 )
-def _impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, surface,
+def _impacts(loading, radius, unloading, residual, par, force, factors, body, surface,
              omega, psi, work, tailed, used, own, out, left, rows):
     """Integrate the impacts `own`, all of which have a state of one length."""
     w = bundled(work)
@@ -136,7 +136,7 @@ def _impacts(loading, radius, unloading, residual, par, force, factors, breaks, 
     for i in own:
         m = bundled(Model(
             loading, radius, unloading, residual, par[min(i, len(par) - 1)],
-            force[min(i, len(force) - 1)], factors[min(i, len(factors) - 1)], breaks, body[i],
+            force[min(i, len(force) - 1)], factors[min(i, len(factors) - 1)], body[i],
             omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], sums))
         _sum_up(m, w)
         sums[at.HAS_TAIL], sums[at.SIZE] = 1.0 if tailed[i] else 0.0, float(used[i])

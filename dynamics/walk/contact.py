@@ -119,10 +119,10 @@ def loading_radius(m, depth):
 
 
 @njit(cache=True, **PLAIN)
-def slope_of(m, branch, depth, phase, d):
-    """Slope of the static force over the depth [N/m], by a difference inside a smooth stretch."""
+def slope_of(m, branch, depth, phase):
+    """Slope of the static force over the depth [N/m], by a difference."""
     if phase == at.LOAD:
-        low, high = fo.loading_window(d, branch[fo.SEGMENT_LOW], branch[fo.SEGMENT_HIGH])
+        low, high = fo.loading_window(depth)
         rise = fo.static_loading(m.loading, m.par, m.force, m.factors, high)
         rise -= fo.static_loading(m.loading, m.par, m.force, m.factors, low)
     else:
@@ -144,10 +144,8 @@ def _contact_of(m, w, z, seen):
     body, force, branch, phase = m.body, m.force, w.branch, w.now[at.PHASE]
     depth = seen[at.DEPTH]
     ploughing, stiffness, waves = 0.0, 0.0, 0.0
-    d = depth
     if phase == at.LOAD:
-        d = min(max(depth, branch[fo.SEGMENT_LOW]), branch[fo.SEGMENT_HIGH])
-        f = fo.static_loading(m.loading, m.par, force, m.factors, d)
+        f = fo.static_loading(m.loading, m.par, force, m.factors, depth)
     else:
         f = fo.static_unloading(m.unloading, m.par, branch, depth)
     if body[at.PLOUGH] != 0.0:
@@ -159,7 +157,7 @@ def _contact_of(m, w, z, seen):
     seen[at.STATIC] = f
     if force[fo.RADIATION] != 0.0:
         # the waves' power is kappa (dF/dt)^2
-        slope = slope_of(m, branch, depth, int(phase), d)
+        slope = slope_of(m, branch, depth, int(phase))
         waves = force[fo.RADIATION] * slope * slope * seen[at.RATE]
         f += waves
     if force[fo.DAMPING] != 0.0:

@@ -15,9 +15,6 @@ from .motion import derivative
 
 # fmt: off
 
-# limit: depth to either side of a border of the law [depth]: round-off
-_BREAK_GAP = 1e-13
-
 
 @njit(cache=True, **PLAIN)
 def sliding_mode(m, w, friction):
@@ -62,8 +59,6 @@ def slip_speed(m, w, mode, ahead, z, dz, moved):
         for j in range(len(z)):
             moved[j] = z[j] + from_here * dz[j]
         _, limit, _, stiffness = contact(m, w, moved, seen)
-    elif phase == at.LOAD and depth + ahead * rate > branch[fo.SEGMENT_HIGH]:
-        ahead = -ahead
     for j in range(len(z)):
         moved[j] = z[j] + (from_here + ahead) * dz[j]
     _, later, _, stiff = contact(m, w, moved, seen)
@@ -146,7 +141,6 @@ def event_values(m, w, z, seen, values):
     values[at.RELOAD] = branch[0] - depth
     values[at.REST], values[at.REVERSAL] = now[at.MODE] * sliding, now[at.SIDE] * sliding
     values[at.SLIDE] = -seen[at.MARGIN]
-    values[at.BORDER] = branch[fo.SEGMENT_HIGH] - depth
     if m.body[at.COMPLIANCE] < math.inf:
         _yielding_values(m, w, z, seen, values)
 
@@ -160,7 +154,6 @@ def mark_active(m, w):
     leaving = loading == at.UNLOAD and not approaching and variable != at.BY_ROOT_DEPTH
     active[at.PART] = active[at.RETURNED] = leaving
     active[at.RELOAD] = loading == at.UNLOAD and approaching
-    active[at.BORDER] = loading == at.LOAD and variable != at.BY_ROOT_DEPTH
     active[at.REST], active[at.SLIDE] = now[at.MODE] != 0.0, now[at.MODE] == 0.0
     active[at.REVERSAL] = m.body[at.COMPLIANCE] < math.inf
 
@@ -174,7 +167,7 @@ def by_chord(m, w, event):
     if turns and w.surface[su.STANDING] > 0.0:
         return True
     plate = m.body[at.S_PLATE] > 0.0
-    return plate and (turns or event == at.RELOAD or event == at.BORDER)
+    return plate and (turns or event == at.RELOAD)
 
 
 @njit(cache=True, **PLAIN)
@@ -182,7 +175,7 @@ def event_slope(m, event, z, dz, seen, sign, pace):
     """Derivative of an event function where `pace` is dt per independent variable; 0: no form."""
     if event == at.PART:
         return seen[at.RATE] * pace
-    if event == at.RELOAD or event == at.BORDER:
+    if event == at.RELOAD:
         return -seen[at.RATE] * pace
     if event == at.SLIDE:
         return 0.0
@@ -203,19 +196,6 @@ def event_slope(m, event, z, dz, seen, sign, pace):
 
 
 @njit(cache=True, **PLAIN)
-def set_segment(m, w, depth):
-    """Bound the loading curve to its smooth stretch around `depth`."""
-    branch = w.branch
-    branch[fo.SEGMENT_LOW], branch[fo.SEGMENT_HIGH] = 0.0, math.inf
-    for border in m.breaks:
-        if border <= depth * (1.0 + 2.0 * _BREAK_GAP):
-            branch[fo.SEGMENT_LOW] = border * (1.0 + _BREAK_GAP)
-        else:
-            branch[fo.SEGMENT_HIGH] = border * (1.0 - _BREAK_GAP)
-            break
-
-
-@njit(cache=True, **PLAIN)
 def meet(m, w, x):
     """Begin a contact at x: the phase, what the law's depth is counted from, the branch.
 
@@ -226,10 +206,9 @@ def meet(m, w, x):
     surface[su.STANDING] = surface[su.COUNT]
     now[at.APPROACHING] = 1.0
     branch[fo.RECEDING] = 0.0
-    for i in range(fo.SEGMENT_LOW):
+    for i in range(fo.PEAK_FORCE):
         branch[i] = 0.0
     now[at.PHASE], now[at.OFFSET] = at.LOAD, surface[su.TIP_FLAT]
-    set_segment(m, w, 0.0)
     here = su.bed(surface, x)
     most = max(here, surface[su.TIP_PEAK])
     if most <= 0.0:

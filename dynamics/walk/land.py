@@ -6,11 +6,8 @@ gone by the derivatives at both of its ends.
 
 from __future__ import annotations
 
-import math
-
 from numba import float64, njit
 
-from .. import force as fo
 from . import layout as at
 from .events import by_chord, event_slope, event_values, hermite_root, mark_active
 from .layout import PLAIN
@@ -163,12 +160,6 @@ def find_event(m, w):
             now[at.STEP] = 0.5 * first * h
             return AGAIN
         return chosen
-    if now[at.BORDERING] > 0.0:
-        root = math.sqrt(w.branch[fo.SEGMENT_HIGH])
-        move = (w.branch[fo.SEGMENT_HIGH] - w.seen_new[at.DEPTH]) / (2.0 * root)
-        for j in range(len(w.z)):
-            w.z_new[j] += move * w.stages[STAGES, j]
-        return at.BORDER
     if now[at.LANDING] > 0.0:
         return at.PART if now[at.VARIABLE] == at.BY_ROOT_DEPTH else at.TURN
     return NONE

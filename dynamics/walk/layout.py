@@ -25,12 +25,11 @@ PLAIN = {
 
 
 class Given(NamedTuple):
-    """What impacts are given, one row each or one row for all; `breaks` are one vector for all."""
+    """What impacts are given, one row each or one row for all."""
 
     par: Any
     force: Any
     factors: Any
-    breaks: Any
     body: Any
     surface: Any
     omega: Any
@@ -47,7 +46,6 @@ class Model(NamedTuple):
     par: Any
     force: Any
     factors: Any
-    breaks: Any
     body: Any
     omega: Any
     psi: Any
@@ -88,7 +86,7 @@ class Work(NamedTuple):
 
 
 MODEL = Bundle(types.BaseTuple.from_types(
-    (LOADING, BRANCH, BRANCH, SPLIT, *6 * (VECTOR,), MATRIX, VECTOR), Model))
+    (LOADING, BRANCH, BRANCH, SPLIT, *5 * (VECTOR,), MATRIX, VECTOR), Model))
 WORK_TUPLE = types.BaseTuple.from_types((*19 * (VECTOR,), *3 * (MATRIX,), FLAGS), Work)
 WORK = Bundle(WORK_TUPLE)
 
@@ -127,8 +125,8 @@ N_SEEN = 18
 # independent variable, its value, the next step and what was taken of it, the sign of the
 # tangential speed; the rest are flags.
 (PHASE, MODE, OFFSET, VARIABLE, AT, STEP, TAKEN, SIDE, APPROACHING, RECHECK, FRESH, TURNING,
- TO_RATE, SIMPLE, BORDERING, LANDING, PRESSING) = range(17)
-N_NOW = 17
+ TO_RATE, SIMPLE, LANDING) = range(15)
+N_NOW = 15
 
 # Scales of the impact.
 (SPEED, SPEED_T, D_REF, T_REF, SMALL_FORCE, AHEAD, SPRING_FORCE, BITE, FIRST_STEP,
@@ -172,9 +170,9 @@ LOAD, UNLOAD = range(2)
 BY_TIME, BY_ROOT_TIME, BY_ROOT_DEPTH, BY_RATE = range(4)
 
 # Events: turning point, separation, return of the approach, the old peak, end of sliding, end of
-# rest, end of a smooth stretch of the loading curve, reversal of the sliding speed.
-TURN, PART, RETURNED, RELOAD, REST, SLIDE, BORDER, REVERSAL = range(8)
-N_EVENTS = 8
+# rest, reversal of the sliding speed.
+TURN, PART, RETURNED, RELOAD, REST, SLIDE, REVERSAL = range(7)
+N_EVENTS = 7
 
 HISTORY = (
     "time_s", "penetration_m", "normal_force_N", "tangential_force_N", "normal_velocity_m_s",

@@ -45,26 +45,6 @@ def touch(m, w):
 
 
 @njit(cache=True, **PLAIN)
-def _by_depth(w):
-    """Walk towards the next border of the loading curve by the root of the depth, else by time."""
-    now, seen = w.now, w.seen
-    if now[at.TO_RATE] > 0.0:
-        return
-    place, h = now[at.AT], now[at.STEP]
-    ahead = w.branch[fo.SEGMENT_HIGH] < w.scales[at.D_REF]
-    ahead = ahead and seen[at.RATE] > 0.6 * w.scales[at.SPEED]
-    if ahead and now[at.VARIABLE] < at.BY_ROOT_DEPTH:
-        span = h if now[at.VARIABLE] == at.BY_TIME else h * (2.0 * place + h)
-        place = math.sqrt(max(seen[at.DEPTH], 0.0))
-        now[at.VARIABLE], now[at.AT] = at.BY_ROOT_DEPTH, place
-        now[at.STEP] = math.sqrt(place * place + seen[at.RATE] * span) - place
-    elif now[at.VARIABLE] == at.BY_ROOT_DEPTH and not ahead:
-        now[at.VARIABLE], now[at.STEP] = at.BY_TIME, h * (2.0 * place + h) / seen[at.RATE]
-    elif now[at.VARIABLE] == at.BY_ROOT_DEPTH:
-        now[at.AT] = math.sqrt(max(seen[at.DEPTH], 0.0))
-
-
-@njit(cache=True, **PLAIN)
 def grip(w):
     """Let a yielding contact rest; its spring keeps the friction that it slid with."""
     w.z[at.SPRING], w.now[at.MODE] = w.seen[at.TANGENTIAL], 0.0
@@ -98,8 +78,6 @@ def refresh(m, w):
         # not to the parting, where the force fades like a broken power
         if now[at.VARIABLE] == at.BY_TIME:
             now[at.STEP] = min(now[at.STEP], -0.6 * left / seen[at.RATE])
-    if now[at.PHASE] == at.LOAD and now[at.TURNING] > 0.0 and now[at.APPROACHING] > 0.0:
-        _by_depth(w)
     if now[at.TO_RATE] > 0.0 or now[at.VARIABLE] == at.BY_RATE:
         now[at.VARIABLE], now[at.AT], now[at.TO_RATE] = at.BY_RATE, seen[at.RATE], 0.0
         now[at.STEP] = -seen[at.RATE]

@@ -31,18 +31,9 @@ class Contact:
     surface: Array
     branch: Array = field(default_factory=lambda: np.zeros(fo.N_BRANCH))
     approaching: bool = True
-    low: float = 0.0
-    high: float = math.inf
     peak_radius: float = 0.0
     receding: bool = False
     side: float = 0.0
-
-    def stretch(self, breaks: Array, depth: float) -> None:
-        """Bound the loading curve to its smooth stretch around `depth`."""
-        above = breaks[breaks > depth * (1.0 + 2e-13)]
-        below = breaks[breaks <= depth * (1.0 + 2e-13)]
-        self.low = float(below[-1]) * (1.0 + 1e-13) if len(below) else 0.0
-        self.high = float(above[0]) * (1.0 - 1e-13) if len(above) else math.inf
 
 
 class Motion:
@@ -120,7 +111,6 @@ class Motion:
         a = self.a
         d, rate, _ = self.pressed(z, k)
         if k.phase == LOADING:
-            d = min(max(d, k.low), k.high)
             f = self.on_loading(self.loading, a.par, a.force, a.factors, d)
         else:
             f = self.on_unloading(self.unloading, a.par, k.branch, d)
@@ -163,8 +153,6 @@ class Motion:
         # Look back where looking ahead would leave this stretch of the force.
         if k.phase == UNLOADING and depth < k.branch[1] + k.branch[2]:
             first, second = z - 2.0 * ahead * rate, z - ahead * rate
-        elif k.phase == LOADING and depth > k.high:
-            first, second = z - ahead * rate, z
         stiff, later = self.stiffness(first, k), self.stiffness(second, k)
         if stiff <= 0.0 or later <= 0.0:
             return k.sign * abs(v)

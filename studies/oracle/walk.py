@@ -130,7 +130,6 @@ class _Walk:
             k.branch = self.recovery(peak)
             k.peak_radius = mo.pressed_radius(peak)
             k.offset -= k.branch[1] + k.branch[2]
-        k.stretch(a.breaks, 0.0)
         return k
 
     def recovery(self, peak: float) -> Array:
@@ -156,8 +155,6 @@ class _Walk:
             found.append(("turn", lambda t, z: mo.normal(z, k)[1]))
             if k.phase == UNLOADING:
                 found.append(("reload", lambda t, z: k.branch[0] - depth(z)))
-            elif math.isfinite(k.high):
-                found.append(("jump", lambda t, z: k.high - depth(z)))
         else:
             found.append(("part", lambda t, z: depth(z) - rest))
             found.append(("return", lambda t, z: -mo.normal(z, k)[1]))
@@ -326,11 +323,6 @@ class _Walk:
                 self.turn(z, k)
         elif name == "reload":
             k.phase = LOADING
-            k.stretch(self.a.breaks, k.branch[0])
-            self.regrip(z, k)
-        elif name == "jump":
-            k.stretch(self.a.breaks, k.high)
-            self.force = max(self.force, mo.normal(z, k)[0])
             self.regrip(z, k)
         elif name == "reversal":
             k.side = -k.side

@@ -39,12 +39,7 @@ def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[InverseRow]
             math.radians(e["angle_deg"]), -e["approach_m_s"], e["friction"], e["restitution"],
             -e["depth_m"], -e["sliding_m"], e["rebound_m_s"],
         )  # fmt: skip
-        rows.append(
-            InverseRow(
-                f"{e['angle_deg']} degrees", measured, infer(rod, measured),
-                e["printed_duration_s"], e["printed_mean_force_N"],
-            )
-        )  # fmt: skip
+        rows.append(InverseRow(f"{e['angle_deg']} degrees", measured, infer(rod, measured)))
     return rod, rows
 
 

@@ -57,7 +57,7 @@ OF_AN_INVERSE = {
     "tip_radius_m": 8e-3, "mass_kg": 0.4, "length_m": 0.2, "radius_m": 7e-3, "inertia_kg_m2": 1e-3,
     "trial": "first", "angle_deg": 50.0, "impact_speed_m_s": 1.2, "rebound_m_s": 0.05,
     "friction_impulse_ratio": 0.06, "restitution": 0.55, "permanent_depth_m": 2e-5,
-    "sliding_length_m": 2e-3, "printed_duration_s": 1e-3, "printed_mean_force_N": 300.0,
+    "sliding_length_m": 2e-3,
 }  # fmt: skip
 
 

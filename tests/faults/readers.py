@@ -209,7 +209,7 @@ def _read_setup(path):
 def _read_inverse(path):
     from dentscope.dynamics.files.inverse_file import read_inverse
 
-    _rod, rows = read_inverse(path)
+    rows = read_inverse(path)
     for row in rows:
         assert np.isfinite([row.inferred.duration, row.inferred.mean_force]).all(), "NaN"
 

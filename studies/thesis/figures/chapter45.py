@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
-from ....dynamics.inverse import alpha_curve
+from ....dynamics.inverse import alpha
 from ...plot import Entry, Picture, finish, sheet
 from .. import chapter5
 from . import chapter4, tables
@@ -31,7 +31,7 @@ def _alpha() -> Picture:
     rod = chapter5.thesis_rod()
     sticks = {}
     for mu in (0.0, 0.1, 0.2, 0.5, 1.0):
-        values = alpha_curve(rod, angles, mu=mu)
+        values = np.array([alpha(rod, float(angle), mu=mu) for angle in angles])
         sticks[mu] = values > 0.0
         jam = np.abs(np.diff(values, append=values[-1])) > 5.0
         axis.plot(np.degrees(angles), np.where(jam, np.nan, values), label=f"friction {mu:g}")

@@ -54,10 +54,10 @@ sliding_length_m = 1650e-6
 def test_file_and_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "trials.toml"
     file.write_text(FILE)
-    row = read_inverse(file)[1][0]
+    row = read_inverse(file)[0]
     assert row.inferred.duration == pytest.approx(1.38e-3, rel=0.01)
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 0
-    assert (tmp_path / "trials-inverse-alpha.png").exists()
+    assert (tmp_path / "trials-inverse.csv").exists()
     file.write_text(FILE.replace("0.13", "0.9"))
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 2
     told = "trial.0.friction_impulse_ratio: 0.9 makes the tip stick"

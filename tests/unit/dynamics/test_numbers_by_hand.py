@@ -90,7 +90,7 @@ def test_of_a_deviation_that_leaves_the_range_a_part_is_taken(std, share):
 
 
 def test_slopes_are_differences_over_a_ten_thousandth_of_the_depth():
-    assert loading_window(1.0, 0.0, 2.0) == pytest.approx((1.0 - 1e-4, 1.0 + 1e-4), abs=1e-12)
+    assert loading_window(1.0) == pytest.approx((1.0 - 1e-4, 1.0 + 1e-4), abs=1e-12)
 
 
 def test_a_table_of_strengths_has_four_nodes_to_a_factor_of_four():
