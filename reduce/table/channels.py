@@ -73,7 +73,8 @@ def _table(channels: list[_Channel]) -> tuple[list[str], Array]:
 
 
 def _with_unit(name: str, said: Mapping[str, Any]) -> str:
-    unit = next((_word(said[k]) for k in _UNITS if k in said), "")
+    unit = next((said[k] for k in _UNITS if k in said), "")
+    unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
     return f"{name} [{in_short(unit)}]" if unit else name
 
 
@@ -87,10 +88,6 @@ def _step(said: Mapping[str, Any]) -> float | None:
             if number > 0.0 and np.isfinite(number):
                 return 1.0 / number if turned else number
     return None
-
-
-def _word(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
 def _tdms(path: Path) -> dict[str, list[_Channel]]:

@@ -179,6 +179,7 @@ def _of_text(
         for lines in every for one in ("", ";", "\t", ",")
         for between, rows in [cells_of(lines[:_LINES], source, separator=one)]
     ]  # fmt: skip
-    lines, between, _ = max(tried, key=lambda one: one[2])
+    # blanks part words too: where another separator shows numbers, it is that
+    lines, between, _ = max(tried, key=lambda one: (one[1] != " " and one[2][1] > 1, one[2]))
     rows = _typed(cells_of(lines, source, separator=between)[1])
     return between, rows, head_of(rows, given)

@@ -208,7 +208,8 @@ def columns_of(
         spread = kinds.is_spread(says)
         kind = kind_of(says) if kinds.named(says) or not spread else _beside(columns, place, says)
         cells = [row[place] for row in rows[head.end :] if row[place]]
-        if kind is None and not columns and header and _are_names(cells):
+        names = sum(_NAME.fullmatch(cell) is not None for cell in cells)
+        if kind is None and not columns and header and 2 * names > len(cells):
             kind = kind_of("trial")
         if kind is not None and (kind.quantity == "text" or not spread or kind in quantities):
             spread = spread and kind.quantity != "text"
@@ -234,10 +235,6 @@ def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind 
             same = quantity_of(kinds.said_unit(says)) in ("", column.kind.quantity)
             return column.kind if same else None
     return None
-
-
-def _are_names(cells: Sequence[str]) -> bool:
-    return 2 * sum(_NAME.fullmatch(cell) is not None for cell in cells) > len(cells)
 
 
 def _not_understood(header: str) -> str:

@@ -19,7 +19,8 @@ from .kinds import SUMMARY, SUMS, kind_of
 from .trial import Readings, became, mean_of, naming_of, note_of, restitutions_of, scatter_of
 from .words import APPROACHES, BODY, UNDERSTOOD, bare
 
-_SIZE = re.compile(r"\d[\d.,]*\s*(?P<unit>[^\W\d_]+)")
+_SIZE = re.compile(r"(?P<a>\d[\d.,]*)\s*(?P<b>[^\W\d_]+)|[(\[](?P<d>\w+)[)\]]\W*(?P<c>\d[\d.,]*)")
+"""Such as 4.08 g, [g]: 4.08."""
 _CLAUSE = re.compile(r"[^,;\d]*")
 _BALLS = [kind for kind in words.KINDS if kind.name in BODY]
 # limit: ratio of what is said of one ball's diameter or mass [-]; weighed again, rounded
@@ -118,13 +119,14 @@ def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
             text, spoken = bare(line[start : found.start()]), bare(line[: found.start()])
             if not words.has(words.BALL, spoken):  # a 10 mm steel ball
                 text = spoken = bare(_CLAUSE.match(line, found.end())[0])  # type: ignore[index]
-            kind = next((n for n in _BALLS if in_short(found["unit"]) in UNITS[n.quantity]), None)
+            number, unit = found["a"] or found["c"], in_short(found["b"] or found["d"])
+            kind = next((n for n in _BALLS if unit in UNITS[n.quantity]), None)
             other = words.has(words.NO_BALL, re.split(words.letters(words.BALL), text)[-1])
             if kind is not None and words.has(words.BALL, spoken) and not other:
-                column = SheetColumn(0, "", kind, None)
-                if value := number_in(found[0], column, sheet.decimals):
+                column = SheetColumn(0, "", kind, unit)
+                if value := number_in(number, column, sheet.decimals):
                     body.setdefault(kind.name, set()).add(value)
-                    said.append(f"{kind.said} {found[0]}")
+                    said.append(f"{kind.said} {number} {unit}")
             start = found.end()
         if said:
             used[ABOVE.format(k)] = f"row {k}: {', '.join(said)}, the striker's"

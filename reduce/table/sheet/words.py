@@ -27,15 +27,15 @@ def bare(text: str) -> str:
 
 _STROKES = str.maketrans("łŁ", "lL")
 
-HEIGHT = r"height|hoe?he|hauteur|\bhaut\b|altezza|altura|\balt\b|wysokosc|\bwys\b|高|\bh\b|\bht\b"
+HEIGHT = r"height|hoe?he|hauteur|altezza|altura|wysokosc|\b(h|ht|haut|alt|quota|wys)\b|高"
 DROPS = (
     r"drop|fall|release|chute|lacher|caduta|lancio|caida|lanzam|queda|lancam|abwurf|spad|zrzut|upad|"
-    r"upuszcz|initial|anfang|inizial|inicial|poczatk|下落|落下|跌落|落球|初始"
+    r"upuszcz|initial|anfang|inizial|inicial|poczatk|落|跌|初始"
 )
 """Words of a drop height."""
 REBOUND = (
     r"rebound|bounce|return|rue?ck(prall|sprung|kehr)|abprall|sprunghoe?he|rebond|remontee|retour|"
-    r"rimbalz|ritorno|rebote|retorno|ressalt|repiqu|ricochet|odbici|\bodb\b|odskok|powrot|回弹|反弹|跳ね返|"
+    r"rimbalz|ritorno|rebote|retorno|ressalt|repiqu|ricochet|odbici|\bodb\b|odskok|powrot|回弹|反弹|跳ね?返|"
     r"はね返|反発"
 )
 SPEED = r"speed|\bvel(oc|\b)|geschw|\bvit(esse|\b)|predk|速度|速さ"
@@ -48,8 +48,8 @@ _BEFORE = (
     r"incid|entrada|entree|ingresso|\bvor\b|avant|prima|antes|przed|冲击|碰撞|撞击|入射|衝突|衝撃"
 )
 _DENT = (
-    r"\bdent|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
-    r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|凹坑|压坑|圧痕|くぼみ|窪み|へこみ"
+    r"\bdent|dimple|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
+    r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|坑|圧痕|くぼみ|窪み|へこみ"
 )
 _SCAR = r"\bscar|scratch|kratzspur|kratzer|rayure|rasguno|arranh|graffio|zarysow|划痕|擦伤|擦過痕"
 BALL = r"\b(ball|sphere|bille|sfer|bola|esfer|kul)|kugel|球|ボール"
@@ -87,7 +87,7 @@ EXTREMES = (
     r"minim\w*|maxim\w*|min|max|sum|total|summe|suma|somme|最大[值値]?|最小[值値]?|合计|合計|ø|n ?="
 )
 LATER = (
-    r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
+    r"\b([2-9](nd|rd|th|eme|[eoa]|\.)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
     r"segund[oa]|tercer\w*|drugi\w*|trzeci\w*)\b|第[二三四2-4]"
 )
 FROM_NORMAL = (
@@ -158,7 +158,7 @@ def has(pattern: str, words: str) -> bool:
 # the first that is said
 KINDS = (
     SheetKind("note", "text",
-        (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|bemerk|kommentar|komentarz|anmerk|"
+        (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|\bbem(erk|\b)|kommentar|komentarz|anmerk|"
          r"remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|记录$|备注|说明|備考|コメント|メモ",)),
     SheetKind("person", "text",
         (r"operator|observer|experimenter|student|te[ck]hni[ck]|tecnic|"
@@ -183,7 +183,7 @@ KINDS = (
         "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
     SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
         "^(v( ?n)?|v ?(in?|imp|auf)|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|"
-        "predkosc|速度)$", ALONG),
+        r"predkosc|速度)( normal\w*)?$", ALONG),
     SheetKind("dent_diameter_m", "length", (_DENT, rf"{_DIAMETER}|dm\b|{_WIDTH}|\bd ?\d?$")),
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
@@ -191,11 +191,12 @@ KINDS = (
     SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent", _DEPTH),
         "eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
-    SheetKind("contact_time_s", "time", (_BLOW, _TIME), "duree|durata|duracion|duracao|^t ?c$",
+    SheetKind("contact_time_s", "time", (_BLOW, _TIME),
+        r"duree|durata|duracion|duracao|^t ?(c$|[ck]ont)",
         rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}"),
-    SheetKind("peak_force_N", "force", (_MOST, _FORCE), "^f ?(max|peak)$"),
+    SheetKind("peak_force_N", "force", (_MOST, _FORCE), rf"^f ?({_MOST})"),
     SheetKind(LOAD, "force",
-        (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷|荷重)(?![a-z])|"
+        (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷)(?![a-z])|荷重|"
          "(test|applied) (force|load)|force appliquee|fuerza aplicada|forza applicata|"
          "forca aplicada|prue?f(kraft|last)|试验力|試験力",)),
     SheetKind(BALL_DIAMETER, "length", (BALL, _DIAMETER)),
@@ -203,8 +204,8 @@ KINDS = (
     SheetKind("trial", "text",
         (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"
          r"sample|specimen|drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|"
-         r"probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd)\b|^drop$|^n°|"
-         "编号|序号|番号|试样|試料",)),
+         r"probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|^drop$|^n°|"
+         "编号|序号|番号|试样|試料|試番",)),
     *map(plain_kind, (
         "approach_tangential_m_s", "approach_spin_rad_s", "tangential_rebound_m_s",
         "friction_impulse_ratio", "sliding_length_m", "scar_excess_m", "press_depth_m",

@@ -284,9 +284,13 @@ OF_LABORATORIES = {
     "pl": ("Pomiar;Obciążenie [N];Średnica odcisku [mm];;\n;;d1;d2;dśr\n"
            "1;1000;0,62;0,64;0,63\n2;2000;0,87;0,89;0,99\n",
            {"load_N": 2000.0, "dent_diameter_m": 8.8e-4}),
-    "zh": ("高度(cm),第一次回弹(cm),第二次回弹(cm),平均(cm)\n20,7.6,7.4,7.5\n40,14.3,14.1,14.2\n",
+    "tabs": ("prędkość normalna (m/s)\te ± s\tF pico (kN)\tt contato (µs)\n"
+             "1,02 ± 0,01\t0,647 ± 0,005\t0,82\t55\n2,04 ± 0,01\t0,603 ± 0,004\t1,85\t49,6\n",
+             {"impact_speed_m_s": 2.04, "restitution": 0.603, "peak_force_N": 1850.0,
+              "contact_time_s": 4.96e-5}),
+    "zh": ("落高(cm),第一次回弹(cm),第二次回弹(cm),平均(cm)\n20,7.6,7.4,7.5\n40,14.3,14.1,14.2\n",
            {"drop_height_m": 0.4, "restitution": math.sqrt(14.2 / 40)}),
-    "ja": ("落下高さ,反発,,\nh0 (cm),1 (cm),2 (cm),平均 (cm)\n20,7.6,7.4,7.5\n40,14.3,14.1,14.2\n",
+    "ja": ("落下高さ,跳返り,,\n(cm),1 (cm),2 (cm),平均 (cm)\n20,7.6,7.4,7.5\n40,14.3,14.1,14.2\n",
            {"drop_height_m": 0.4, "restitution": math.sqrt(14.2 / 40)}),
 }  # fmt: skip
 
@@ -327,6 +331,7 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
          "tangential rebound speed (m/s)"),
         ("v (m/s),1st rebound speed (m/s),2nd rebound speed (m/s)\n1,0.65,0.4\n",
          "2nd rebound speed (m/s)"),
+        ("v (m/s),1er rebond (m/s),2e rebond (m/s)\n1,0.65,0.4\n", "2e rebond (m/s)"),
         ("v (m/s),e,Ball no,inc. (deg)\n1,0.65,1,3\n", "inc. (deg)"),
         ("v (m/s),e,h1 (mm),± (mm)\n1,0.65,1,3\n", "± (mm)"),
         ("v (m/s),e,dent diameter (mm),± (%)\n1,0.65,1,3\n", "± (%)"),
@@ -533,7 +538,8 @@ def test_a_ball_that_is_the_same_in_all_rows_is_that_of_the_set(tmp_path, head, 
 
 @pytest.mark.parametrize(
     "above",
-    ["Kugel Ø 10,5 mm;Messing\nKugelmasse:;4,08 g;", "Ball: AISI 52100, 10.5 mm dia., 4.08 g",
+    ["Kugel Ø 10,5 mm;Messing\nKugelmasse [g]:;4,08;", "球径：10.5mm  球重：4.08g",
+     "Ball: AISI 52100, 10.5 mm dia., 4.08 g",
      "Plate 20 mm, from 0.5 m; 10.5 mm steel ball (4.08 g)\nBall radius 5 mm, plate 3 kg",
      "Kulka: średnica 10,5 mm, masa 4,08 g"],
 )  # fmt: skip
