@@ -83,7 +83,7 @@ def case(
     ):
         console.print(f"written: {path}")
     console.print(_write_law(solution, uncertainty, out / "law.json"))
-    for path in _write_fields(solution, out, picture=picture):
+    for path in found.draw_fields(out, cut=picture):
         console.print(f"written: {path}")
     if not solution.outcome.completed:
         console.print(str(solution.outcome))
@@ -105,23 +105,6 @@ def tell_unused(file: Path) -> None:
     ]  # fmt: skip
     if unused:
         say(f"not in this solve: {', '.join(unused)}; `dentscope impact` takes them")
-
-
-def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
-    """Write the fields at every depth asked for, and draw them."""
-    from ..fem.results.cutaway import draw_cutaway
-    from ..fem.results.fields import draw_section, write_vtu
-
-    pair = solution.problem.pair
-    for snapshot in solution.snapshots:
-        name = f"fields-{snapshot.depth:.4g}"
-        yield write_vtu(snapshot, out / f"{name}.vtu")
-        extent = 2.5 * float(solution.loading.radius[-1])
-        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
-        yield draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
-        space = out / f"{name}-cut.png"
-        if picture and draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
-            yield space
 
 
 def _write_measured(solution: Any, told: MeasuredContact, out: Path) -> Iterator[Path]:

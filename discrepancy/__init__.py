@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from ..dynamics.mechanisms import MECHANISMS, Mechanism, Parameter
+from ..dynamics.mechanisms import MECHANISMS, Mechanism, Parameter, Surroundings
 from .findings import Verdict
 from .verdict import diagnose
 
-__all__ = ["MECHANISMS", "Mechanism", "Parameter", "Verdict", "diagnose"]
+__all__ = ["MECHANISMS", "Mechanism", "Parameter", "Surroundings", "Verdict", "diagnose"]

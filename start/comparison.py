@@ -154,7 +154,7 @@ def compare_laws(
     law: str | Sequence[str] = (),
     max_delta_over_R: float | None = None,
 ) -> LawComparison:
-    """Compare contact laws on a pair of one's own.
+    """Compare contact laws on a pair of one's own; `best`, `departures`, `plot()`, `frame()` tell.
 
     Parameters
     ----------

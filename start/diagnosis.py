@@ -108,6 +108,9 @@ def diagnose(
 ) -> Diagnosis:
     """Say what physics is missing in the simulation of a recording set.
 
+    The answer has `finding`, `mechanisms`, `verdict` with all numbers, `plot()`, `frame()`,
+    `report(path)`.
+
     Parameters
     ----------
     folder

@@ -110,6 +110,27 @@ class Solved:
             made.suptitle(self.remark, fontsize=10)
         return made
 
+    def draw_fields(self, folder: str | Path, *, cut: bool = False) -> list[Path]:
+        """Draw stress and plastic strain at the largest approach; return the files written.
+
+        `fields-*.png`, `fields-*.vtu` for ParaView; with `cut` the bodies cut open, too.
+        """
+        from ..fem.results.cutaway import draw_cutaway
+        from ..fem.results.fields import draw_section, write_vtu
+
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        pair, extent = self.solution.problem.pair, 2.5 * float(self.solution.loading.radius[-1])
+        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+        made: list[Path | None] = []
+        for one in self.solution.snapshots:
+            name = str(Path(folder) / f"fields-{one.depth:.4g}")
+            made.append(write_vtu(one, Path(f"{name}.vtu")))
+            made.append(draw_section(one, Path(f"{name}.png"), Sy_min=strength, extent=extent))
+            if cut:
+                space = Path(f"{name}-cut.png")
+                made.append(draw_cutaway(one, space, Sy_min=strength, extent=extent))
+        return [path for path in made if path is not None]
+
     def _shown(self) -> list[list[str]]:
         rows = self.rows()
         step = max(1, len(rows) // 12)
@@ -134,7 +155,7 @@ def case(
     speed_m_s: float | None = None,
     friction: float | None = None,
 ) -> Solved:
-    """Solve a pair by finite elements.
+    """Solve a pair by finite elements; `plot()`, `draw_fields(folder)`, `frame()` show it.
 
     Parameters
     ----------

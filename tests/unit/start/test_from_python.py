@@ -302,11 +302,11 @@ def test_a_radius_in_millimetres_and_what_is_no_material_are_told():
 
 USER = """
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
 
 import dentscope as ds
 import numpy as np
-from dentscope.discrepancy import Mechanism, Parameter
+from dentscope.discrepancy import Mechanism, Parameter, Surroundings
 from dentscope.dynamics import Scene
 
 hard: ds.Material = ds.Material(E=210e9, nu=0.3, Sy=2e9, density=7800)
@@ -318,6 +318,7 @@ best: tuple[str, ...] = ds.compare_laws(pair, law=["fitted", "hertz"]).best
 e: float = ds.impact(pair, speed=2.0, law="hardening")["hardening"].restitution
 mean = ds.sweep("ball", speed=[1.0, 2.0], angle_deg=60.0)["restitution"].mean()
 ds.case(pair, level="smoke").plot().savefig("case.png")
+drawn: list[Path] = ds.case(pair).draw_fields("fields", cut=True)
 raised: type[ValueError] = ds.core.InputError
 
 
@@ -325,7 +326,7 @@ class Mine(Mechanism):
     name, title, equations = "mine", "of my own", ""
     parameters = (Parameter("work", "J/kg", 1e-3, 1.0, "log", 0.0, "a guess"),)
 
-    def attach(self, scene: Scene, values: Mapping[str, float], around: Any) -> Scene:
+    def attach(self, scene: Scene, values: Mapping[str, float], around: Surroundings) -> Scene:
         return scene.with_(approach=scene.approach)
 
 
