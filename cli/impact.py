@@ -41,7 +41,7 @@ def impact(
 ) -> None:
     """Simulate impacts by the fitted law, published ones beside it.
 
-    Of a file (the keys of a recording set's set.toml, [impact] and [sweep]): all observables of
+    From a file (the keys of a recording set's set.toml, [impact] and [sweep]): all observables of
     each law, histories, CSV and HDF5; every combination of [sweep] into CSV and Parquet.
     """
     if new:

@@ -96,7 +96,7 @@ def odds_of(
     names: dict[str, tuple[str, ...]] = {BASELINE: (), OUTSIDE: ()}
     log = {}
     for label, gain in gained.items():
-        names[label] = () if label == BASELINE else tuple(label.split("+"))
+        names[label] = members(label)
         log[label] = log_prior(names[label], share) + tempered(gain)
     beside = dict(beside or {})
     for label in ranking.unfitted:
@@ -113,6 +113,11 @@ def odds_of(
     total = float(logsumexp(list(log.values())))
     found = {k: math.exp(x - total) for k, x in sorted(log.items(), key=lambda item: -item[1])}
     return Odds(names, _supported(found), alike)
+
+
+def members(label: str) -> tuple[str, ...]:
+    """Return the mechanisms and wrong numbers of an explanation."""
+    return () if label == BASELINE else tuple(label.split("+"))
 
 
 def gains(ranking: Ranking) -> dict[str, float]:

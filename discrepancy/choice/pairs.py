@@ -20,7 +20,7 @@ from ..inference.together import mutual
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 from ..rules import RULES
 from ..unknowns.wrong_number import is_wrong
-from .odds import BASELINE, gains, log_prior, prior_shares, tempered
+from .odds import gains, log_prior, members, prior_shares, tempered
 
 # limit: places of each mechanism in the search for pairs [-]; a pair takes their square
 _PLACES = 48
@@ -57,8 +57,7 @@ def with_pairs(
     def weight(names: Sequence[str], gain: float) -> float:
         return log_prior(names, share) + tempered(gain)
 
-    gained = gains(ranking)
-    least = max(weight([k for k in (name,) if k != BASELINE], x) for name, x in gained.items())
+    least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
     order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
     pairs: list[Fit] = []
     best = -math.inf
