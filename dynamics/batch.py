@@ -19,6 +19,7 @@ from ..core.arrays import Array, Integers, Mask, numbers
 from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
+from ..models.turned import as_made, turned
 from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
@@ -261,12 +262,13 @@ def _by_steps(
 
 def _quick(law: ContactLaw, scene: Scene) -> ContactLaw:
     """Return the law from its table if it can stand in one."""
-    table = tabulated(law)
+    own, pair = as_made(law, scene.pair)
+    table = tabulated(own)
     try:
-        table.table(scene.pair)
+        table.table(pair)
     except InputError:
         return law
-    return table
+    return table if own is law else turned(table)
 
 
 def _of_mass(scene: Scene, mass: float) -> Scene:

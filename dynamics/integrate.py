@@ -11,6 +11,7 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
+from ..models.turned import TurnedLaw
 from . import force as fo
 from .result import Impact, impact_of, leave_resting
 from .rules import RULES
@@ -124,6 +125,8 @@ def _factors(scene: Scene) -> Array:
     if scene.flow:
         table = strength_table(scene.law, scene.pair)
         found *= table.factors(scene.strengths(table))
+        if isinstance(scene.law, TurnedLaw):
+            found[fo.F_ODDS] **= -1.0
     return found.ravel()
 
 
@@ -146,11 +149,19 @@ def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
 
 
 def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
-    """Integrate the rows of `given` into those of `out`, as `many_impacts` does."""
+    """Integrate the rows of `given` into those of `out`, as `many_impacts` does.
+
+    A turned law walks as it was made: its sphere, the smaller one, takes its dent along as it
+    slides, whichever strikes. Then what stays goes to the bodies of the pair.
+    """
     # importing it compiles: a file that is refused and the list of keys do without
     from .walk.compiled import many_impacts
 
-    return many_impacts(tuple(law.kernels), given, out, **more)
+    own = law.law if isinstance(law, TurnedLaw) else law
+    rows = many_impacts(tuple(own.kernels), given, out, **more)
+    if own is not law:
+        out[:, [c.O_RES_S, c.O_RES_F]] = out[:, [c.O_RES_F, c.O_RES_S]]
+    return rows
 
 
 def _given(rows: Sequence[Arrays]) -> c.Given:

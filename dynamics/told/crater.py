@@ -10,6 +10,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...fitting.craters import PLACES, Body, Left, crater_shape
+from ...models.turned import TurnedLaw
 from ..result import Impact
 from ..scene import Scene
 from ..surface import Imprint
@@ -53,6 +54,7 @@ def surfaces_left(
     radius = float(scene.law.contact_radius(scene.pair, peak)) if mark is None else mark.radius
     if not (0.0 < radius < math.inf and math.isfinite(found.residual_m)):
         return []  # far outside a published law
+    dented = "sphere" if isinstance(scene.law, TurnedLaw) else "flat"
     edged = scene.striker.tip_flat_radius > 0.0 or radius > scene.force.edge
     left = Left(radius, peak, found.residual_sphere_m, found.residual_flat_m)
     bodies: tuple[tuple[Body, str], ...] = (
@@ -61,7 +63,7 @@ def surfaces_left(
     shared = 0.0 if std is None else peak * _share_std(scene, peak)
     return [
         _surface(
-            scene, left, body, mark if body == "flat" else None,
+            scene, left, body, mark if body == dented else None,
             None if std is None else math.hypot(std(name), shared), edged=edged,
         )
         for body, name in bodies

@@ -129,19 +129,21 @@ def test_two_balls_lose_more_than_one_on_a_flat():
         assert low < 1.0 - two / one < high
 
 
-def test_what_rough_spheres_keep_is_the_same_from_either_side():
-    """Asperities stay flat in either body, by its share of what stays."""
+def test_rough_spheres_that_slide_are_the_same_from_either_side():
+    """Asperities stay flat in either body, and the smaller one takes its dent along."""
     content = tomllib.loads(TWO) | {"mechanisms": {"roughness": {"roughness_m": 2e-6}}}
-    content["target"] |= {"radius_m": 0.004, "Sy_Pa": 7e8}
+    content["impact"] |= {"impact_speed_m_s": 10.0, "angle_deg": 30.0}
+    content["target"] |= {"radius_m": 0.004, "Sy_Pa": 4e8}
     other = {**content, "target": dict(content["target"])}
-    swapped = {**content["strikers"]["ball"], "tip_radius_m": 0.004, "Sy_Pa": 7e8}
+    swapped = {**content["strikers"]["ball"], "tip_radius_m": 0.004, "Sy_Pa": 4e8}
     other["target"] |= {"radius_m": 0.005, "Sy_Pa": 6e8}
     other["strikers"] = {"ball": swapped}
-    kept = []
-    for one in (content, other):
-        setup = setup_of(one, source="two.toml")
-        kept.append(last_blow(setup, LAWS["fitted"]).residual_m)
-    assert kept[1] == pytest.approx(kept[0], rel=1e-6)
+    here, there = (
+        last_blow(setup_of(one, source="two.toml"), LAWS["fitted"]) for one in (content, other)
+    )
+    assert there.restitution == pytest.approx(here.restitution, rel=1e-6)
+    assert there.residual_flat_m == pytest.approx(here.residual_sphere_m, rel=1e-6)
+    assert there.residual_sphere_m == pytest.approx(here.residual_flat_m, rel=1e-6)
 
 
 def test_what_only_one_shape_has_is_refused_for_the_other():
