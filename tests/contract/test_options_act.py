@@ -60,7 +60,6 @@ def test_a_command_reads_every_option(name):
     [
         ("impact --new ball --law hertz", "--law"),
         ("impact --new ball --exact", "--exact"),
-        ("impact --exact", "--exact"),
         ("case --new --picture", "--picture"),
         ("inverse --new --out some", "--out"),
         ("fit --judge some --only hardening", "--only"),
