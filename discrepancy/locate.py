@@ -30,16 +30,19 @@ ORDER = "order of testing"
 class Miss:
     """One place where the baseline misses.
 
-    - `observable`, `phase`, `covariate`: what, in which phase of the impact, along which condition.
-    - `trend`: in words: how recording over simulation goes.
-    - `z`: score; the family-wise threshold is in `Located`.
+    `observable`, `covariate`: what, along which condition; `trend`: in words: how recording over
+    simulation goes; `z`: score; the family-wise threshold is in `Located`.
     """
 
     observable: str
-    phase: str
     covariate: str
     trend: str
     z: float
+
+    @property
+    def phase(self) -> str:
+        """Phase of the impact that shapes the observable most."""
+        return OBSERVABLES[self.observable].phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,24 +81,21 @@ def locate(
     score = contrasts @ base.residual / size
     null = np.abs(nulls.made_by(base) @ contrasts.T / size)
     spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
-    found = []
-    for (observable, covariate), z in zip(names, score / spread, strict=True):
-        found.append(
-            Miss(
-                observable, OBSERVABLES[observable].phase, covariate, _trend(covariate, z), float(z)
-            )
-        )
+    found = [
+        Miss(observable, covariate, _trend(covariate, z), float(z))
+        for (observable, covariate), z in zip(names, score / spread, strict=True)
+    ]
     threshold = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
     columns = [
         # the deviate that a normal variable exceeds as rarely, to first order in its logarithm
-        Miss(f.observable, OBSERVABLES[f.observable].phase, f.column,
-             f"recordings differ with {f.column}", math.sqrt(-2.0 * f.log_p))
+        Miss(f.observable, f.column, f"recordings differ with {f.column}",
+             math.sqrt(-2.0 * f.log_p))
         for f in problem.followed
     ]  # fmt: skip
     columns += [
-        Miss(d.observable, OBSERVABLES[d.observable].phase, ORDER,
-             f"recordings {'rise' if d.z > 0 else 'fall'} with the {ORDER}", d.z)
+        Miss(d.observable, ORDER, f"recordings {'rise' if d.z > 0 else 'fall'} with the {ORDER}",
+             d.z)
         for d in sorted(problem.drifts, key=lambda d: -abs(d.z))
     ]  # fmt: skip
     beyond = [m for m in found if abs(m.z) > threshold]

@@ -298,9 +298,8 @@ def _sharper(problem: Problem, best: Fit) -> list[Proposal]:
     slopes = _slopes(best)
     total, noise = best.linear.total, best.linear.noise
     today = _width(slopes, total)
-    names = list(dict.fromkeys(problem.cells.observable))
     found = []
-    for name in names:
+    for name in dict.fromkeys(problem.cells.observable):
         here = np.array([o == name for o in problem.cells.observable])
         share = _width(slopes, with_half_the_noise(total, noise, here)) / today
         text = f"halve the noise of {OBSERVABLES[name].label}, or repeat it four times as often"

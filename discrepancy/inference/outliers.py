@@ -32,27 +32,24 @@ def outlying(problem: Problem, judge: Fit) -> Mask:
     own = np.diag(judge.linear.noise)
     near = _neighbours(problem)
     most = max(int(RULES.outlier_share * len(residual)), 1)
+
+    def inverse_without(some: Mask) -> Array:
+        return np.linalg.inv(total + np.diag(np.where(some, WIDER**2 * own, 0.0)))
+
     while found.sum() < most:
-        inverse = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0)))
+        inverse = inverse_without(found)
         score = inverse @ residual / np.sqrt(np.diag(inverse))
         worst = int(np.argmax(np.where(found | backed, 0.0, np.abs(score))))
         if abs(score[worst]) < RULES.outlier or found[worst] or backed[worst]:
             break
         # without this value: do its neighbours lean the same way?
-        without = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0))
-                                + _wide(worst, own))  # fmt: skip
+        without = inverse_without(found | (np.arange(len(found)) == worst))
         others = without @ residual / np.sqrt(np.diag(without)) * np.sign(score[worst])
         if np.any(others[near[worst]] > RULES.alone):
             backed[worst] = True
         else:
             found[worst] = True
     return found
-
-
-def _wide(i: int, own: Array) -> Array:
-    extra = np.zeros((len(own), len(own)))
-    extra[i, i] = WIDER**2 * own[i]
-    return extra
 
 
 def _neighbours(problem: Problem) -> list[Indices]:

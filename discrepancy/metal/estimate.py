@@ -43,7 +43,7 @@ from .next_mark import TOLD, NextMark, next_mark, with_marks
 _METAL_ROUNDS = 10
 
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
-"""Probability of the intervals."""
+"""What a blow or a press leaves to be measured."""
 RATE = dict(RULES.rate_priors)
 """Priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise): C of Johnson
 and Cook gives rises of 0.1 to 0.4, Cowper and Symonds 0.6 to 1.9; what is kept is the range of

@@ -73,32 +73,25 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
     total = np.array([math.hypot(one.speed, one.tangential) for one in c])
     loads = [one.press.load for one in c if one.press is not None]
     beside = " (of presses: as deep)" if loads else ""
+
+    def of_striker(key: str) -> Array:
+        return np.array([1e3 * of[f"strikers.{one.striker}.{key}"] for one in c])
+
+    speeds = np.array([one.speed for one in c])
+    driven = Against("speed_m_s", f"approach speed [m/s]{beside}", speeds)
+    if len(loads) == len(c):
+        driven = Against("load_N", "load [N]", np.array(loads))
+    along = np.array([one.tangential for one in c])
+    heat = np.array([one.around.temperature for one in c])
     known = (
-        Against("load_N", "load [N]", np.array(loads))
-        if len(loads) == len(c)
-        else Against(
-            "speed_m_s", f"approach speed [m/s]{beside}", np.array([one.speed for one in c])
-        ),
+        driven,
         Against("angle_deg", "angle [deg]", np.degrees([one.incidence for one in c])),
-        Against(
-            "tangential_m_s", "tangential speed [m/s]", np.array([one.tangential for one in c])
-        ),
-        Against(
-            "tip_radius_mm", "radius of the tip [mm]",
-            np.array([1e3 * of[f"strikers.{one.striker}.tip_radius_m"] for one in c]),
-        ),
-        Against(
-            "length_mm", "length of the rod [mm]",
-            np.array([1e3 * of[f"strikers.{one.striker}.length_m"] for one in c]),
-        ),
-        Against(
-            "mass_g", "mass of the striker [g]",
-            np.array([1e3 * of[f"strikers.{one.striker}.mass_kg"] for one in c]),
-        ),
-        Against(
-            "temperature_K", "temperature [K]", np.array([one.around.temperature for one in c])
-        ),
-    )  # fmt: skip
+        Against("tangential_m_s", "tangential speed [m/s]", along),
+        Against("tip_radius_mm", "radius of the tip [mm]", of_striker("tip_radius_m")),
+        Against("length_mm", "length of the rod [mm]", of_striker("length_m")),
+        Against("mass_g", "mass of the striker [g]", of_striker("mass_kg")),
+        Against("temperature_K", "temperature [K]", heat),
+    )
     varying = [a for a in known if np.ptp(a.values) > 1e-3 * np.max(np.abs(a.values))]
     if np.ptp(total) < 0.01 * total.max() and len(varying) > 1:
         # one speed at several angles: its parts are not what was chosen

@@ -26,7 +26,7 @@ def point(speed: float, *, with_verdict: float = math.nan) -> SeriesPoint:
 
 
 def miss(z: float) -> Miss:
-    return Miss("restitution", "free-flight", "overall", "recordings lie above", z)
+    return Miss("restitution", "overall", "recordings lie above", z)
 
 
 def said(

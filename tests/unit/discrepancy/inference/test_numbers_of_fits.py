@@ -11,7 +11,7 @@ from dentscope.discrepancy.choice.pairs import PairEffect, _candidates, with_pai
 from dentscope.discrepancy.inference.derivatives import _beside
 from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, tried_steps
 from dentscope.discrepancy.inference.grid import Axis, Grid
-from dentscope.discrepancy.inference.outliers import _neighbours, _wide
+from dentscope.discrepancy.inference.outliers import _neighbours, without_weight
 from dentscope.discrepancy.inference.together import refined
 from dentscope.discrepancy.inference.window import sharpened
 from dentscope.discrepancy.rank import rank, sharpened_leading
@@ -164,8 +164,9 @@ def test_neighbours_of_an_impact_are_impacts_even_where_presses_lie_nearer(toy) 
     assert sorted(near[0].tolist()) == [1, 2]
 
 
-def test_a_slip_counts_as_thirty_times_as_unsure() -> None:
-    assert _wide(1, np.array([1.0, 4.0]))[1, 1] == 30.0**2 * 4.0
+def test_a_slip_counts_as_thirty_times_as_unsure(toy) -> None:
+    given = without_weight(toy.problem([0.0, 40.0]), np.array([False, True]))
+    assert given.cells.std.tolist() == [1.0, 30.0]
 
 
 def library_of(toy, *sizes, length=8):
