@@ -105,16 +105,11 @@ def labelled(each: Iterable[tuple[str, Mapping[str, Measured]]]) -> dict[str, Me
 class Trial:
     """One row of trials.csv, and the curves that belong to it.
 
-    Parameters
-    ----------
-    observables
-        Column of trials.csv and its value; the standard deviation fills the column `NAME_std`.
-    trace, profile
-        Columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
-    label
-        Part of the trial's name that tells several trials of one file apart.
-    note
-        What the person who measured wrote beside it.
+    - `observables`: column of trials.csv and its value; the standard deviation fills the column
+      `NAME_std`.
+    - `trace`, `profile`: columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
+    - `label`: part of the trial's name that tells several trials of one file apart.
+    - `note`: what the person who measured wrote beside it.
     """
 
     observables: Mapping[str, Measured]

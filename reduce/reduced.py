@@ -15,24 +15,14 @@ from .measured import Measured, Trial
 class Reduced:
     """One raw file, reduced.
 
-    Parameters
-    ----------
-    source
-        The raw file (or folder of pictures).
-    values
-        Everything that was measured, by a name that ends in its unit.
-    trials
-        The rows that it makes of trials.csv; none for a file that shows no impact.
-    draw
-        Writes the picture that a person can check the numbers by.
-    notes
-        What the reader should know, a sentence each.
-    striker
-        Keys of `[strikers.NAME]` that were measured.
-    noise
-        Keys of `[noise]` that were measured; those that a set already has stay.
-    flow
-        `target` or the name of a striker, and its flow curve, if that was measured.
+    - `source`: the raw file (or folder of pictures).
+    - `values`: everything that was measured, by a name that ends in its unit.
+    - `trials`: the rows that it makes of trials.csv; none for a file that shows no impact.
+    - `draw`: writes the picture that a person can check the numbers by.
+    - `notes`: what the reader should know, a sentence each.
+    - `striker`: keys of `[strikers.NAME]` that were measured.
+    - `noise`: keys of `[noise]` that were measured; those that a set already has stay.
+    - `flow`: `target` or the name of a striker, and its flow curve, if that was measured.
     """
 
     source: Path

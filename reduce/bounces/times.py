@@ -65,22 +65,12 @@ def reduce_bounce_times(
 ) -> BounceTimes:
     """Return the bounces behind a list of instants of contact.
 
-    Parameters
-    ----------
-    times
-        (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
-    options
-        What is known of the ball.
-    std
-        (n,) standard deviations of the times [s]; None takes them from the scatter of the
-        intervals about a smooth course, which is part of them in any case.
-    source
-        The file.
+    - `times`: (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
+    - `options`: what is known of the ball.
+    - `std`: (n,) standard deviations of the times [s]; None takes them from the scatter of the
+      intervals about a smooth course, which is part of them in any case.
 
-    Raises
-    ------
-    InputError
-        No three instants hang together, or none of them follow each other.
+    Raises `InputError`: no three instants hang together, or none of them follow each other.
     """
     chain = chain_of(times)
     if chain is None:

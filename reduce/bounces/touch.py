@@ -46,16 +46,10 @@ def touch_of(
     show its ends; fewer bound its duration, and bodies that begin to part at the rebound speed
     share it so that both flights meet within.
 
-    Parameters
-    ----------
-    track, stage, view, flights
-        Samples, and the flights before and after.
-    met
-        What `speeds` gives at the meeting of the flights.
-    known
-        Duration of the contact [s], if it is known.
-    likely
-        How likely the samples of this contact and of the others make each of `LASTS`.
+    - `track`, `stage`, `view`, `flights`: samples, and the flights before and after.
+    - `met`: what `speeds` gives at the meeting of the flights.
+    - `known`: duration of the contact [s], if it is known.
+    - `likely`: how likely the samples of this contact and of the others make each of `LASTS`.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)

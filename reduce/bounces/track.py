@@ -19,20 +19,13 @@ from ..shared.regression import robust_std
 class Track:
     """Heights of a point against time; the unit of length is the caller's.
 
-    Parameters
-    ----------
-    time
-        (n,), increasing [s].
-    height
-        (n,), upwards [unit].
-    floor
-        Smallest error of a position that is believed [unit].
-    trend
-        Error of a position that grows from one end of a flight to the other, as uneven light makes
-        one of the place of an edge [unit].
-    near, unsure
-        Height above the flat below which a position is less sure, as where a body and its
-        reflection run together, and by how much it then may drift over a flight [unit].
+    - `time`: (n,), increasing [s].
+    - `height`: (n,), upwards [unit].
+    - `floor`: smallest error of a position that is believed [unit].
+    - `trend`: error of a position that grows from one end of a flight to the other, as uneven light
+      makes one of the place of an edge [unit].
+    - `near`, `unsure`: height above the flat below which a position is less sure, as where a body
+      and its reflection run together, and by how much it then may drift over a flight [unit].
     """
 
     time: Array

@@ -89,21 +89,13 @@ def fit_rod(
 ) -> RodPose | None:
     """Fit pose, or pose and shape, to the grey values around the tip.
 
-    Parameters
-    ----------
-    frame
-        (rows, columns), grey values, the rod bright.
-    shape, pose
-        Start; `pose` is column and row of the tip on the axis, and lean.
-    levels
-        Grey values of background and rod.
-    free
-        `"pose"`; `"shape"` for half-width and curvature, `"mirror"` for the reflection as well.
+    - `frame`: (rows, columns), grey values, the rod bright.
+    - `shape`, `pose`: start; `pose` is column and row of the tip on the axis, and lean.
+    - `levels`: grey values of background and rod.
+    - `free`: `"pose"`; `"shape"` for half-width and curvature, `"mirror"` for the reflection as
+      well.
 
-    Returns
-    -------
-    RodPose or None
-        None where the tip is not wholly in the frame or the fit does not settle.
+    Returned: None where the tip is not wholly in the frame or the fit does not settle.
     """
     window = _rod_window(frame.shape, shape, pose)
     if window is None:

@@ -45,22 +45,13 @@ class BodyFile(InputTable):
 class Body:
     """The striker in the axes of the markers' mean shape.
 
-    Parameters
-    ----------
-    shape
-        `"rod"`, `"sphere"` or `"body"`, which touches with its lowest marker.
-    axis
-        (3,) unit vector of the rod, either way; zero for the others.
-    length
-        Between the centres of a rod's two tip spheres [m].
-    tip_radius
-        Of the rod's tip or the sphere [m].
-    inertia_over_mass
-        About the centre, across the axis, over the mass [m²].
-    centre
-        Centre of mass seen from the markers' centroid, and its uncertainty.
-    markers
-        (m, 3) mean shape about its centroid [m].
+    - `shape`: `"rod"`, `"sphere"` or `"body"`, which touches with its lowest marker.
+    - `axis`: (3,) unit vector of the rod, either way; zero for the others.
+    - `length`: between the centres of a rod's two tip spheres [m].
+    - `tip_radius`: of the rod's tip or the sphere [m].
+    - `inertia_over_mass`: about the centre, across the axis, over the mass [m²].
+    - `centre`: centre of mass seen from the markers' centroid, and its uncertainty.
+    - `markers`: (m, 3) mean shape about its centroid [m].
     """
 
     shape: str

@@ -24,25 +24,15 @@ from .file import Markers
 class Poses:
     """The body in the frames in which three or more of its markers were seen.
 
-    Parameters
-    ----------
-    frame
-        (k,) numbers of the frames.
-    time
-        (k,) [s].
-    origin
-        (k, 3) place of the mean shape's centroid [m].
-    turn
-        (k, 3, 3) rotations from the mean shape to the frame.
-    whiten
-        (k, 6, 6) factor that turns the error (of origin [m], rotation [rad]) into six independent
-        ones of a marker's own size.
-    shape
-        (m, 3) mean shape about its centroid [m].
-    spread
-        Root mean square distance of the markers from the mean shape over all frames [m].
-    dropped
-        Number of marker positions left out because they do not fit the body.
+    - `frame`: (k,) numbers of the frames.
+    - `time`: (k,) [s].
+    - `origin`: (k, 3) place of the mean shape's centroid [m].
+    - `turn`: (k, 3, 3) rotations from the mean shape to the frame.
+    - `whiten`: (k, 6, 6) factor that turns the error (of origin [m], rotation [rad]) into six
+      independent ones of a marker's own size.
+    - `shape`: (m, 3) mean shape about its centroid [m].
+    - `spread`: root mean square distance of the markers from the mean shape over all frames [m].
+    - `dropped`: number of marker positions left out because they do not fit the body.
     """
 
     frame: Integers

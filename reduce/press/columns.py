@@ -53,14 +53,10 @@ _STATED = re.compile(
 class PressRecord:
     """Load against depth, in the order of time.
 
-    Parameters
-    ----------
-    load, depth
-        (n,) [N, m]; the load upwards, the depth growing with it.
-    missed, gap
-        How many rows hold no number; how many of them stand just before each row, (n,).
-    stated
-        Compliance of the machine that the file states [m/N]; none if it does not.
+    - `load`, `depth`: (n,) [N, m]; the load upwards, the depth growing with it.
+    - `missed`, `gap`: how many rows hold no number; how many of them stand just before each row,
+      (n,).
+    - `stated`: compliance of the machine that the file states [m/N]; none if it does not.
     """
 
     load: Array

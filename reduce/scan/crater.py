@@ -22,27 +22,16 @@ from .walls import Section, opening, pile_up, section, section_covariance, witho
 class Crater:
     """A measured crater; lengths in metres.
 
-    Parameters
-    ----------
-    depth
-        Deepest point below the undisturbed surface.
-    pile_up
-        Height of the rim, mean along the edge at the distance where it is largest.
-    length, width
-        Between the walls at the level of the surface: along the scar, and across it at the
-        deepest point; nan where a wall leaves the scan.
-    sliding
-        `length - width`.
-    volume
-        Of the part below the surface [m³].
-    deepest
-        (2,) place of the deepest point.
-    direction
-        Angle of the scar in the scan [rad].
-    surface
-        The levelled scan.
-    along, across
-        Sections through the deepest point along and across the scar.
+    - `depth`: deepest point below the undisturbed surface.
+    - `pile_up`: height of the rim, mean along the edge at the distance where it is largest.
+    - `length`, `width`: between the walls at the level of the surface: along the scar, and across
+      it at the deepest point; nan where a wall leaves the scan.
+    - `sliding`: `length - width`.
+    - `volume`: of the part below the surface [m³].
+    - `deepest`: (2,) place of the deepest point.
+    - `direction`: angle of the scar in the scan [rad].
+    - `surface`: the levelled scan.
+    - `along`, `across`: sections through the deepest point along and across the scar.
     """
 
     depth: Measured

@@ -26,16 +26,10 @@ LEVELS = {"plane": 1, "paraboloid": 2}
 class Levelled:
     """A scan above its undisturbed surface.
 
-    Parameters
-    ----------
-    z
-        (nx, ny) heights above it, NaN where nothing was seen [m].
-    crater, clear
-        (nx, ny) the crater; the surface that it was levelled on.
-    step, terms
-        (2,) distance of the points [m]; (nx, ny, p) polynomial terms of the level.
-    outliers
-        Number of spikes taken out.
+    - `z`: (nx, ny) heights above it, NaN where nothing was seen [m].
+    - `crater`, `clear`: (nx, ny) the crater; the surface that it was levelled on.
+    - `step`, `terms`: (2,) distance of the points [m]; (nx, ny, p) polynomial terms of the level.
+    - `outliers`: number of spikes taken out.
     """
 
     z: Array

@@ -45,12 +45,8 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     that hang together (lag-one correlation r of the points in their order) carry less information:
     the covariance is multiplied by (1 + r)/(1 - r) for r > 0.
 
-    Parameters
-    ----------
-    design, observed
-        (n, p) and (n,), n > p, in the order of time.
-    floor
-        Smallest residual standard deviation that is believed, in the unit of `observed`.
+    `design`, `observed`: (n, p) and (n,), n > p, in the order of time; `floor`: smallest residual
+    standard deviation that is believed, in the unit of `observed`.
     """
     n, p = design.shape
     scale = np.linalg.norm(design, axis=0)

@@ -50,12 +50,8 @@ DAY = 86400.0
 def plain(cell: str, separator: str) -> str:
     """Return a number with a decimal point and without separators of thousands.
 
-    Parameters
-    ----------
-    cell
-        As the file has it.
-    separator
-        Of the file's cells; where it is a comma, a comma in a cell separates thousands.
+    `cell`: as the file has it; `separator`: of the file's cells; where it is a comma, a comma in a
+    cell separates thousands.
 
     Examples
     --------

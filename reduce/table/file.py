@@ -39,18 +39,10 @@ _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 class Columns:
     """Numbers of a table.
 
-    Parameters
-    ----------
-    names
-        Of the columns as the file has them, empty where it has none, m entries.
-    values
-        (n, m), NaN where a cell holds no number.
-    cells
-        The same as text, n rows of m.
-    source
-        The file.
-    heading
-        What stands above the numbers.
+    - `names`: of the columns as the file has them, empty where it has none, m entries.
+    - `values`: (n, m), NaN where a cell holds no number.
+    - `cells`: the same as text, n rows of m.
+    - `heading`: what stands above the numbers.
     """
 
     names: tuple[str, ...]

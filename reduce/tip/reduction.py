@@ -28,26 +28,15 @@ from .edge import find_edges
 class TipReduction:
     """The fitted circle, in pixels unless said otherwise.
 
-    Parameters
-    ----------
-    x, y, radius
-        Middle (column, row) and radius of the circle.
-    edge
-        (n, 2) columns and rows of the edge points.
-    used
-        (n,) points within the final fit.
-    residual
-        (n,) distance of the points outside the circle.
-    blur
-        Standard deviation of the blur.
-    arc
-        Angle that the used points span [rad].
-    sides
-        Left and right side of a rod as column = a + b row, or None.
-    width
-        Of the rod, nan for a ball.
-    scale
-        Size of a pixel [m], nan where it is not known.
+    - `x`, `y`, `radius`: middle (column, row) and radius of the circle.
+    - `edge`: (n, 2) columns and rows of the edge points.
+    - `used`: (n,) points within the final fit.
+    - `residual`: (n,) distance of the points outside the circle.
+    - `blur`: standard deviation of the blur.
+    - `arc`: angle that the used points span [rad].
+    - `sides`: left and right side of a rod as column = a + b row, or None.
+    - `width`: of the rod, nan for a ball.
+    - `scale`: size of a pixel [m], nan where it is not known.
     """
 
     x: float

@@ -28,20 +28,13 @@ from .tracking import grey_levels, striker_bright, track_ball, track_rod
 class Optics:
     """How the picture becomes metres and seconds.
 
-    Parameters
-    ----------
-    rate
-        The camera's own frames per second [1/s].
-    scale
-        Size of a pixel [m], or None.
-    size
-        Diameter of the striker [m], from which the scale follows, or None.
-    ball
-        Gravity, which gives the scale where the fall is long enough, and drag as far as known.
-    line_time
-        From one row of the picture to the next, of a shutter that rolls down [s].
-    stamps
-        (n,) times of the frames where they are not evenly spaced (a phone's) [s].
+    - `rate`: the camera's own frames per second [1/s].
+    - `scale`: size of a pixel [m], or None.
+    - `size`: diameter of the striker [m], from which the scale follows, or None.
+    - `ball`: gravity, which gives the scale where the fall is long enough, and drag as far as
+      known.
+    - `line_time`: from one row of the picture to the next, of a shutter that rolls down [s].
+    - `stamps`: (n,) times of the frames where they are not evenly spaced (a phone's) [s].
     """
 
     rate: float
@@ -61,22 +54,14 @@ class Optics:
 class VideoReduction:
     """A tracked clip and the contacts in it.
 
-    Parameters
-    ----------
-    frame
-        (n,) numbers of the frames in which the striker was found.
-    column, row
-        (n,) tip of the rod on its axis, or centre of the ball [pixel].
-    row_std
-        (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
-    lean
-        (n,) lean of the rod to the right [rad], 0 for a ball.
-    critical_frame, threshold
-        Frame with the fewest dark pixels, grey level between body and background.
-    half_width
-        Half the width of the rod, or radius of the ball [pixel].
-    found
-        Contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
+    - `frame`: (n,) numbers of the frames in which the striker was found.
+    - `column`, `row`: (n,) tip of the rod on its axis, or centre of the ball [pixel].
+    - `row_std`: (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
+    - `lean`: (n,) lean of the rod to the right [rad], 0 for a ball.
+    - `critical_frame`, `threshold`: frame with the fewest dark pixels, grey level between body and
+      background.
+    - `half_width`: half the width of the rod, or radius of the ball [pixel].
+    - `found`: contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
     """
 
     frame: Integers
