@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .estimate import Metal, metal_of
 from .files import write_metal
-from .told import lines
+from .text import lines
 
 __all__ = ["Metal", "lines", "metal_of", "write_metal"]
