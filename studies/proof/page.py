@@ -43,7 +43,7 @@ what is tested but the finite elements.
   plasticity, in half the stated numbers are off within what the sheet says. Noise is Gaussian,
   skewed or heavy-tailed, with outliers and empty cells.
 * **Sheets** state liquids, thin plates, blocks and heights whether they act or not: a learner that
-  sees all but the readings, trained on 848 other sets, has 0.25 in front on 259, the commonest
+  sees all but the readings, trained on 848 other sets, had 0.25 in front on 259, the commonest
   answer of each kind of rig 0.32.
 * **Outside** are six effects without a name in the library; it knows other forms of three.
 * **Seals.** The seed is the digest of the source tree. Truths and recordings are hashed into a
