@@ -81,3 +81,20 @@ def test_sizes_have_the_moments_of_a_normal_logarithm() -> None:
     assert w.sum() == pytest.approx(1.0)
     assert w @ x**2 == pytest.approx(SIZE_SPREAD**2)
     assert w @ x**4 == pytest.approx(3.0 * SIZE_SPREAD**4)
+
+
+def test_each_striker_has_the_error_of_its_own_contact() -> None:
+    """Hertz's is off by 0.3 % in force, the metal's by 3 % of what it loses and more."""
+    two = {"glass": [scene(1.0, HARD, "hertz")], "steel": [scene(1.0)]}
+    error = law_error(two)
+    b = np.zeros(error.count)
+    b[error.rows["force"]] = 1.0
+    size = {}
+    for name, scenes in two.items():
+        factors = np.log(error.transform(b, name).factors)
+        own = law_error({name: scenes})
+        alone = np.zeros(own.count)
+        alone[own.rows["force"]] = 1.0
+        assert factors == pytest.approx(np.log(own.transform(alone, name).factors))
+        size[name] = np.abs(factors).max()
+    assert size["steel"] > 5.0 * size["glass"] > 0.0
