@@ -191,7 +191,7 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
         "seconds, of all rules together. The rules are those of the [plan](proof-plan.md); their "
         f"fits failed on {found['failed']}.", "",
         *score_rows(found),
-        "", "The diagnosis less each of the three best, on the same sets, with 95 % intervals:", "",
+        "", "The diagnosis less each of the two best, on the same sets, with 95 % intervals:", "",
         *less_rows(found | {"rows": best_rules(found)}), "",
         *verdict_lines(best_peer(found), found["rows"][0], n), "",
         "What leads, how often it is the truth:", "", f"| said | {DIAGNOSIS} |", "| --- | --- |",
@@ -201,9 +201,9 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
 
 
 def best_rules(found: dict[str, Any]) -> list[dict[str, Any]]:
-    """The three rules with the most truths in front."""
+    """The two rules with the most truths in front."""
     rules = (r for r in found["rows"] if r["name"] != DIAGNOSIS)
-    return sorted(rules, key=lambda r: -int(r["front"]))[:3]
+    return sorted(rules, key=lambda r: -int(r["front"]))[:2]
 
 
 def score_rows(found: dict[str, Any]) -> list[str]:

@@ -35,7 +35,7 @@ law of contact, its mean metal 2 to 5 % rms from finite elements, each metal som
 own bars, beams and time steps. The tool was chosen on other draws of it as well. The
 [plan](../data/proof/third-world-plan.md), SHA-256 `{plan}`, came before the first set; every set
 and rule is in `data/proof/third-world.json` (tree `{tree}`; `python -m
-dentscope.studies.proof.third_world run`). Columns as above, the three best rules."""
+dentscope.studies.proof.third_world run`). Columns as above, the two best rules."""
 
 
 def kept(
