@@ -78,7 +78,7 @@ SOLVER = (
 
 IMPACT = (
     Use("impact {data}/../examples/impact_rod.toml --out impact", "energy balance"),
-    Use("impact", "checkout", 2),
+    Use("impact", "no file", 2),
     Use("inverse {data}/../examples/inverse_scar.toml --out inverse", "1.384"),
     Use("inverse --new scar.toml", "dentscope inverse scar.toml"),
     Use("recordings list", "kharaz-2001-oblique"),
