@@ -62,8 +62,6 @@ class Forecast:
         # processor seconds of this machine leave only what else runs on it to the benchmark
         self._pace = max(1.0, pace) if self._seen else pace
         self._seen = [(case, s * self._pace) for case, s in self._seen]
-        # a worker's first case compiles on a new machine: it counts until another has ended
-        self._first: list[tuple[Case, float]] = []
         self._fit()
         self._begin(0.0)
 
@@ -72,8 +70,10 @@ class Forecast:
         self._waiting.pop(case.id, None)
         if case.id in self._begun:
             _, since = self._begun.pop(case.id)
-            (self._seen if since > 0.0 else self._first).append((case, max(gone_s - since, 1e-3)))
-            self._fit()
+            # a worker's first case compiles on a new machine, which says nothing of the others
+            if since > 0.0:
+                self._seen.append((case, max(gone_s - since, 1e-3)))
+                self._fit()
         self._begin(gone_s)
 
     def left_s(self, gone_s: float = 0.0) -> float:
@@ -97,12 +97,11 @@ class Forecast:
     def _fit(self) -> None:
         """Bend the measured model towards the cases seen."""
         self._bend, self._scatter = np.zeros(4), 0.0
-        seen = self._seen or self._first
-        if not seen:
+        if not self._seen:
             return
-        A = np.array([_features(case) for case, _ in seen])
-        y = np.log([s / self._pace for _, s in seen])
-        y = y - [_measured(case) for case, _ in seen]
+        A = np.array([_features(case) for case, _ in self._seen])
+        y = np.log([s / self._pace for _, s in self._seen])
+        y = y - [_measured(case) for case, _ in self._seen]
         self._bend = np.linalg.solve(A.T @ A + np.diag(_PRIOR), A.T @ y)
         self._scatter = min(float((y - A @ self._bend).std()), 0.5)
 
