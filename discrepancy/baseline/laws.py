@@ -14,6 +14,7 @@ from typing import Literal
 
 from ...core.flow import Flow
 from ...core.material import Material, Pair
+from ...core.observables import OBSERVABLES
 from ...core.rig import BodyTable, TargetTable
 from ...models import LAWS
 from ...models.anchored import anchored
@@ -36,6 +37,34 @@ LawChoice = Literal["fitted", "table"]
 def without_curves(target: TargetTable) -> ContactLaw:
     """Return the law of a set that says of its metals what a data sheet does."""
     return _shared("fitted" if target.yields else "hertz")
+
+
+def as_known(recordings: RecordingSet) -> tuple[RecordingSet, tuple[str, ...]]:
+    """Return a set with the baseline that its sheet allows, and what a reader must know of it.
+
+    Where the sheet says nothing of how stiff or strong a body is, and only motion was read, no law
+    can foretell a restitution: it is taken as measured, and physics says how it changes.
+    """
+    setup = recordings.setup
+    if "law" in setup.target.model_fields_set or any(
+        OBSERVABLES[name].instrument != "motion" for name in recordings.observed
+    ):
+        return recordings, ()
+    strikers = {s: setup.strikers[s] for s in recordings.trials.striker}
+    if not (_unknown(setup.target) or all(map(_unknown, strikers.values()))):
+        return recordings, ()
+    target = setup.target.model_copy(update={"law": "measured-restitution"})
+    bodies = {"target": setup.target} | {f"strikers.{s}": b for s, b in strikers.items()}
+    whose = " and ".join(key for key, body in bodies.items() if _unknown(body))
+    note = (
+        f"neither modulus nor strength of {whose} is stated: the restitution is taken as measured, "
+        'one at all speeds; law = "elastic-plastic" in [target] takes a metal instead'
+    )
+    return replace(recordings, setup=setup.model_copy(update={"target": target})), (note,)
+
+
+def _unknown(body: BodyTable) -> bool:
+    return body.E_Pa is None and body.strength is None
 
 
 def laws_of(

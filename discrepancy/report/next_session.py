@@ -15,6 +15,9 @@ from .wording import counted, explanation, joined, number_name, percent, quantit
 # limit: deviation of a logarithm beyond which both ends are told [-]: ± would reach below zero
 _WIDE = 0.3
 
+# limit: the same beyond which nothing is foreseen [-]: a factor of 150 either way
+_ENDLESS = 5.0
+
 # limit: explanations whose change is told [-]: a line
 _CHANGED = 3
 
@@ -76,6 +79,7 @@ def _meaning(v: Verdict, one: Telling) -> str:
         if logarithm and std > _WIDE:
             ends = (value * math.exp(-std), value * math.exp(std))
             told = f"{quantity(ends[0], unit)} to {quantity(ends[1], unit)}"
+            told = "anything" if std > _ENDLESS else told
         cases.append(f"{told} if {explanation(name, v.titles)}")
     what = number_name(one.read) if row is None else row.label
     return f"Most telling is step {one.step + 1}, {what}: {'; '.join(cases)}."

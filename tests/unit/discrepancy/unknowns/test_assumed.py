@@ -48,3 +48,44 @@ def test_what_cannot_act_is_refused(name, why) -> None:
     with pytest.raises(InputError, match=why) as told:
         problem_of(given, law="fitted", assume=(name,))
     assert "half-space-waves" in str(told.value.allowed)
+
+
+SHEET = """format = "recording-set/1"
+[target]
+material = "stone floor"
+{target}
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.02
+mass_kg = 0.0027
+{ball}
+[noise]
+{noise} = 0.01
+"""
+
+
+def of_ball(folder: Path, *, target: str = "", ball: str = "", read_as: str = "restitution"):
+    folder.mkdir()
+    (folder / "set.toml").write_text(SHEET.format(target=target, ball=ball, noise=read_as))
+    rows = [
+        f"{k},ball,90,{h},{x}" for k, (h, x) in enumerate([(0.5, 0.8), (1.0, 0.75), (2.0, 0.7)])
+    ]
+    head = f"trial,striker,angle_deg,drop_height_m,{read_as}"
+    (folder / "trials.csv").write_text("\n".join([head, *rows]) + "\n")
+    return problem_of(read(folder))
+
+
+def test_a_body_of_unknown_stiffness_has_its_restitution_measured(tmp_path: Path) -> None:
+    metal = "E_Pa = 2e11\nnu = 0.3\nSy_Pa = 3e8"
+    plain = of_ball(tmp_path / "plain")
+    assert plain.baseline == "measured-restitution"
+    assert any("of target and strikers.ball is stated: the restitution" in n for n in plain.notes)
+    assert of_ball(tmp_path / "floor", ball=metal).baseline == "measured-restitution"
+    assert of_ball(tmp_path / "ball", target=metal).baseline == "measured-restitution"
+    # what says more of the contact than how fast a body leaves, and what the sheet says, go before
+    for name, given in {
+        "both": {"target": metal, "ball": metal},
+        "asked": {"target": 'law = "elastic-plastic"'},
+        "dent": {"read_as": "contact_time_s"},
+    }.items():
+        assert of_ball(tmp_path / name, **given).baseline == "elastic-plastic"
