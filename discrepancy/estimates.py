@@ -11,7 +11,7 @@ from scipy.stats import norm
 
 from ..core.arrays import Array
 from ..recordings import RecordingSet, Severity, audit
-from .choice.odds import log_prior, prior_shares
+from .choice.odds import Priors
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
 from .heldout import HeldOut
@@ -180,10 +180,10 @@ def limits_of(ranking: Ranking) -> dict[str, float]:
     """Smallest value of each first parameter whose effect would have been named."""
     base = ranking.base
     found = {}
-    share = prior_shares([s.mechanism for s in ranking.screened])
+    priors = Priors.of(ranking)
     for s in (s for s in ranking.screened if not is_wrong(s.mechanism)):
-        prior = log_prior((), share) - log_prior((s.mechanism.name,), share)
-        nats = prior / RULES.temper
+        prior = priors.log(()) - priors.log((s.mechanism.name,))
+        nats = max(prior, 0.0) / RULES.temper
         # three nats are what not knowing the parameters costs
         needed = math.sqrt(2.0 * (nats + 3.0))
         p = s.grid.axes[0].parameter

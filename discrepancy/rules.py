@@ -483,6 +483,14 @@ class DiagnosisRules:
         "probabilities before the comparison, shared alike within each kind; of a second one [-]",
         "near the largest mean ln p over 172 sets; those hold no wrong number: as probable",
     )  # fmt: skip
+    acts: float = rule(
+        0.9, "probability that a ball which falls from a stated height is braked by the air [-]",
+        "it is; one in ten for heights that were corrected and not said to be",
+    )  # fmt: skip
+    shows: float = rule(
+        3.0, "standard errors of its least effect from which that counts [-]",
+        "below, whether it acts makes no difference that a set could show",
+    )  # fmt: skip
     strength_wrong: float = rule(
         5.0, "times that the strength of what is struck is rather wrong than another kind [-]",
         "tempers of one metal differ by 2, and no other number of a sheet is as rarely measured",

@@ -10,14 +10,14 @@ two at once and what no name covers compete in one sum; nothing is decided by a 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ...dynamics.mechanisms.base import Mechanism
-from ..rank import Ranking
+from ..rank import Ranking, Screened
 from ..rules import RULES
 from ..unknowns.wrong_number import WRONG, is_wrong
 from .outside import odd_repeats, outside_of
@@ -92,12 +92,12 @@ def odds_of(
     """
     gained = gains(ranking)
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
-    share = prior_shares([s.mechanism for s in ranking.screened])
+    prior = Priors.of(ranking)
     names: dict[str, tuple[str, ...]] = {BASELINE: (), OUTSIDE: ()}
     log = {}
     for label, gain in gained.items():
         names[label] = members(label)
-        log[label] = log_prior(names[label], share) + tempered(gain)
+        log[label] = prior.log(names[label]) + tempered(gain)
     beside = dict(beside or {})
     for label in ranking.unfitted:
         # fits as well as the better of the two, until it is fitted
@@ -133,6 +133,47 @@ def tempered(gain: float) -> float:
     return RULES.temper * (G * math.log1p(gain / G) if gain > 0.0 else gain)
 
 
+@dataclass(frozen=True)
+class Priors:
+    """Ln prior of every explanation.
+
+    - `share`: of each single one; mechanisms alike, wrong numbers by their kind.
+    - `acting`: mechanisms that act beside whatever else does, with `RULES.acts`.
+    """
+
+    share: Mapping[str, float]
+    acting: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, ranking: Ranking) -> Priors:
+        """Return those of a ranking's explanations."""
+        acting = (s.mechanism.name for s in ranking.screened if _acts(ranking, s))
+        return cls(prior_shares([s.mechanism for s in ranking.screened]), frozenset(acting))
+
+    def log(self, names: Collection[str]) -> float:
+        """Ln prior of an explanation, by its members."""
+        rest = [name for name in names if name not in self.acting]
+        found = sum(math.log(RULES.acts if a in names else 1.0 - RULES.acts) for a in self.acting)
+        if not rest:
+            return found + math.log(PRIORS[BASELINE])
+        found += sum(self.share[name] for name in rest)
+        if len(rest) == 1:
+            return found
+        # of a pair: the first as alone, the second by its share among its own kind
+        kind = PRIORS["inputs"] if rest[1].startswith(WRONG) else PRIORS["mechanisms"]
+        return found - math.log(kind) + math.log(PRIORS["second"])
+
+
+def _acts(ranking: Ranking, screened: Screened) -> bool:
+    """Whether a mechanism surely acts, and the set would show the least of it."""
+    around = [c.around for c in ranking.problem.conditions if c.press is None]
+    if not (around and all(map(screened.mechanism.certain, around))):
+        return False
+    noise = np.sqrt(np.diag(ranking.base.linear.noise))
+    size = np.linalg.norm(screened.effect / noise, axis=1)
+    return bool(size.min() > RULES.shows)
+
+
 def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
     """Ln prior of each single explanation: mechanisms alike; wrong numbers by their kind.
 
@@ -151,18 +192,6 @@ def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
         own = PRIORS["inputs"] * weight[kind] / sum(weight.values()) / len(names)
         found |= dict.fromkeys(names, math.log(own))
     return found
-
-
-def log_prior(names: Sequence[str], share: Mapping[str, float]) -> float:
-    """Ln prior of an explanation."""
-    if not names:
-        return math.log(PRIORS[BASELINE])
-    own = sum(share[name] for name in names)
-    if len(names) == 1:
-        return own
-    # of a pair: the first as alone, the second by its share among its own kind
-    kind = PRIORS["inputs"] if names[1].startswith(WRONG) else PRIORS["mechanisms"]
-    return own - math.log(kind) + math.log(PRIORS["second"])
 
 
 def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[str, float]]:

@@ -20,7 +20,7 @@ from ..inference.together import mutual
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 from ..rules import RULES
 from ..unknowns.wrong_number import is_wrong
-from .odds import gains, log_prior, members, prior_shares, tempered
+from .odds import Priors, gains, members, tempered
 
 # limit: places of each mechanism in the search for pairs [-]; a pair takes their square
 _PLACES = 48
@@ -52,10 +52,10 @@ def with_pairs(
     their screening.
     """
     simulator = simulator.of(ranking.problem)
-    share = prior_shares([s.mechanism for s in ranking.screened])
+    prior = Priors.of(ranking)
 
     def weight(names: Sequence[str], gain: float) -> float:
-        return log_prior(names, share) + tempered(gain)
+        return prior.log(names) + tempered(gain)
 
     least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
     order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))

@@ -56,6 +56,10 @@ class AirDrag(Mechanism):
         for name in ("fluid", "viscosity_Pa_s", "density_kg_m3", "pressure_Pa", "temperature_K")
     )
 
+    def certain(self, around: Surroundings) -> bool:
+        """A ball that falls from a stated height is braked on its way."""
+        return around.from_height
+
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs what `idle` does, and speeds that a flight under gravity can have given."""
         reason = self.idle(situations)

@@ -218,6 +218,10 @@ class Mechanism(ABC):
         """Return the parameters that a source has for usual rigs; `sized`: the first is stated."""
         return {p.name: p.literature.value for p in self.parameters if p.literature}
 
+    def certain(self, around: Surroundings) -> bool:
+        """Whether it acts by all that is known, so that it is only looked for how much."""
+        return False
+
     def published(self, around: Surroundings, *, sized: bool = False) -> Values:
         """Return all parameters as stated or usual; neutral where there is neither."""
         neutral = {p.name: p.neutral for p in self.parameters}

@@ -34,6 +34,7 @@ class Effect:
     name: str
     shape: tuple[float, ...]
     reason: str = ""
+    acts: bool = False
     form: float = 0.0
     law_error: float = 1.0
     scale_error: float = 0.0
@@ -49,6 +50,9 @@ class Effect:
 
     def ranges(self, situations: Any) -> tuple[Parameter, ...]:
         return self.parameters
+
+    def certain(self, around: Any) -> bool:
+        return self.acts
 
 
 @dataclass(frozen=True, eq=False)

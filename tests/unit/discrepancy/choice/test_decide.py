@@ -195,6 +195,26 @@ def test_a_mechanism_without_a_fit_counts_by_its_screening(toy) -> None:
     )
 
 
+@pytest.mark.parametrize(("size", "acts"), [(0.5, False), (2.0, True)])
+def test_what_surely_acts_is_beside_everything_once_a_set_would_show_it(toy, size, acts) -> None:
+    drag, other = toy.Effect("drag", ZERO, acts=True), toy.Effect("b", ZERO)
+    shape = (size,) * CELLS
+    ranking = toy.ranking_of(
+        toy.problem([0.0] * CELLS), toy.fit_of(ZERO), pairs=[toy.fit_of(ZERO, drag, other)],
+        singles=[toy.fit_of(ZERO, e) for e in (drag, other)],
+        screened=[toy.screened_of(drag, [shape, (9.0,) * CELLS]), toy.screened_of(other, [ZERO])],
+    )  # fmt: skip
+    assert (RULES.shows < size * math.sqrt(CELLS)) == acts
+    found = odds_of(ranking).probability
+    odds = RULES.acts / (1.0 - RULES.acts)
+    if acts:
+        assert found["drag"] / found["baseline"] == pytest.approx(odds)
+        assert found["drag+b"] / found["b"] == pytest.approx(odds)
+    else:
+        assert found["drag"] / found["b"] == pytest.approx(1.0)
+        assert found["drag+b"] / found["b"] == pytest.approx(PRIORS["second"] / 2)
+
+
 def test_wrong_numbers_share_by_kind_and_the_struck_strength_has_most() -> None:
     numbers = [
         WrongNumber("target.Sy_Pa", "strength", ""), WrongNumber("strikers.a.mass_kg", "mass", ""),
