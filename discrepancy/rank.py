@@ -117,7 +117,7 @@ def rank(
             excluded[mechanism.name] = reason
     problem, base, stated, screened = _cleared(simulator, base, stated, screened)
     simulator = simulator.of(problem)
-    fits = _leading_fits(simulator, base, screened, progress)
+    fits = _leading_fits(simulator, base, stated, screened, progress)
     progress("sharpening the leading fits")
     fits = sharpened_leading(simulator, fits, base)
     return Ranking(
@@ -128,9 +128,12 @@ def rank(
 
 
 def _leading_fits(
-    simulator: Simulator, base: Fit, screened: Sequence[Screened], progress: Progress
+    simulator: Simulator, base: Fit, stated: Fit, screened: Sequence[Screened], progress: Progress
 ) -> list[Fit]:
-    """Fit in full what leads by its screening, until no screening comes near the best fit."""
+    """Fit in full what leads by its screening, until no screening comes near the best fit.
+
+    Beside the true effect the stated numbers are near what is stated: a fit begins there.
+    """
     order = sorted(screened, key=lambda s: -s.log_bayes)
     fits: list[Fit] = []
     best = -math.inf
@@ -140,7 +143,7 @@ def _leading_fits(
             break
         progress(f"fitting {found.mechanism.name}")
         one = fit(
-            simulator, (found.mechanism,), start=base, place=found.place, rounds=3,
+            simulator, (found.mechanism,), start=stated, place=found.place, rounds=3,
             effect=found.effect,
         )  # fmt: skip
         fits.append(one)
