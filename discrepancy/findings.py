@@ -61,8 +61,8 @@ class WrongInput(NamedTuple):
 
     @property
     def told(self) -> dict[str, Any]:
-        """As in verdict.json."""
-        value, low, high = self.would_be or (None, None, None)
+        """As in verdict.json; without a value the interval is that of factor or offset."""
+        value, low, high = self.would_be or (None, self.low, self.high)
         n = self.number
         return {
             "key": n.key, "probability": self.probability, "stated": self.stated,

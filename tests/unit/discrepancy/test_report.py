@@ -7,11 +7,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from dentscope.discrepancy.findings import WrongInput
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
 from dentscope.discrepancy.report.text import headline, nowhere, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
+from dentscope.discrepancy.unknowns.wrong_number import WrongNumber, WrongReading
 from dentscope.dynamics.mechanisms import MECHANISMS
 
 OWN = {"sticky-tape": "a tape holds the tip back"}
@@ -171,3 +173,11 @@ def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     v.probabilities = {"baseline": 0.998, "work-hardening": 0.002}
     told = why(v)
     assert "Most probable: nothing is missing (more than 99 %). Nothing else has a share." in told
+
+
+def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> None:
+    number = WrongReading("restitution", "reading", "all readings are off")
+    told = WrongInput(number, 0.9, None, 1.15, 1.12, 1.18).told
+    assert (told["value"], told["low"], told["factor"], told["high"]) == (None, 1.12, 1.15, 1.18)
+    told = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6).told
+    assert (told["value"], told["low"], told["high"]) == (3e8, 2.8e8, 3.2e8)
