@@ -80,14 +80,15 @@ def keep_compiled_code() -> None:
 def cache_folder(name: str) -> Path:
     """Return the user's own folder for what can be made again; made if there is none."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return _own(_own(base / "dentscope") / name)
+    kept = Path(tempfile.gettempdir()) / f"dentscope-of-{os.geteuid()}"
+    return _own(_own(base / "dentscope", kept) / name)
 
 
-def _own(place: Path) -> Path:
+def _own(place: Path, *others: Path) -> Path:
     """Return a folder that is this user's and that nobody else may write; made if there is none.
 
     numba runs what it finds there: where the name is taken by a folder of others, or by one that
-    others may have put something into, the next name is.
+    others may have put something into, the next name is; where none can be made, the next place.
     """
     for name in (place.name, *(f"{place.name}-{k}" for k in range(2, _MOST_NAMES))):
         folder = place.with_name(name)
@@ -98,7 +99,7 @@ def _own(place: Path) -> Path:
             about = folder.lstat()
             if _is_own(about):
                 return folder
-    return Path(tempfile.mkdtemp(prefix="dentscope-"))
+    return _own(*others) if others else Path(tempfile.mkdtemp(prefix="dentscope-"))
 
 
 def _is_own(about: os.stat_result) -> bool:

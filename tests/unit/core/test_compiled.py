@@ -124,3 +124,12 @@ def test_a_folder_that_others_may_write_is_passed_over(tmp_path, monkeypatch):
     (tmp_path / "dentscope-2").symlink_to(tmp_path / "kept")
     compiled.keep_compiled_code()
     assert Path(os.environ["NUMBA_CACHE_DIR"]).parent == tmp_path / "dentscope-3"
+
+
+def test_without_a_home_the_next_command_finds_what_was_compiled(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    first = compiled.cache_folder("compiled-1")
+    assert first.parent.parent == tmp_path
+    assert compiled.cache_folder("compiled-1") == first
