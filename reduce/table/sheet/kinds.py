@@ -64,8 +64,10 @@ def is_spread(header: str) -> bool:
 
 def named(header: str) -> str:
     """Return the words of a header that name a quantity, without unit and spread."""
-    text = letters(without_unit(_PER_SECOND.sub("m/s", header)).replace("_", " "))
-    text = _SPREAD.sub("", _BESIDE.sub("", re.sub(r"-\s+", "", text))).strip(" .:,/")
+    text = re.sub(words.CONTACT_TIME, "contact time", _PER_SECOND.sub("m/s", header))
+    text = _BESIDE.sub("", re.sub(r"-\s+", "", letters(without_unit(text).replace("_", " "))))
+    own = _SPREAD.sub("", text).strip(" .:,/")
+    text = own if own == text else re.sub(words.OF, "", own).strip()
     ends = [found for found in (last.fullmatch(text) for last in _LAST) if found]
     known = [found[1] for found in ends if in_short(found[2]) in _UNITS]
     if known:
@@ -110,9 +112,12 @@ def unit_of(header: str, kind: SheetKind) -> str | None:
 
 def nearest(header: str) -> str:
     """Return what a header may mean, as a question that `--column` answers; empty without one."""
-    words, quantity = named(header) or bare(header), quantity_of(said_unit(header))
-    kinds = [k for k in KINDS if k.quantity != "text" and quantity in ("", k.quantity)]
-    likeness = {k: sum(_like(part, words) for part in k.parts) / len(k.parts) for k in kinds}
+    text, quantity = named(header) or bare(header), quantity_of(said_unit(header))
+    kinds = [
+        k for k in KINDS
+        if k.quantity != "text" and quantity in ("", k.quantity) and not words.has(k.never, text)
+    ]  # fmt: skip
+    likeness = {k: sum(_like(part, text) for part in k.parts) / len(k.parts) for k in kinds}
     best = max(likeness, key=lambda kind: likeness[kind], default=None)
     if best is None or not likeness[best]:
         return ""
@@ -124,7 +129,5 @@ def _like(part: str, words: str) -> float:
     """The largest share of one of the stems of a pattern that stands in some words, 0 below 3/5."""
     plain = re.sub(r"\\b|\(\?[!<=]*", " ", letters(part))
     stems = re.findall(r"[^\W\d_]{4,}|[^\x00-\u02ff]{2,}", plain)
-    shares = (
-        SequenceMatcher(None, stem, words).find_longest_match().size / len(stem) for stem in stems
-    )
-    return max((share for share in shares if share > 0.6), default=0.0)
+    found = ((SequenceMatcher(None, s, words).find_longest_match().size, len(s)) for s in stems)
+    return max((n / of for n, of in found if n > 0.6 * of and n >= min(of, 4)), default=0.0)

@@ -51,6 +51,10 @@ _DENT = (
     r"\bdent|dimple|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
     r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|坑|圧痕|くぼみ|窪み|へこみ"
 )
+CONTACT_TIME = r"\bt_?[Kk]\b"
+"""By its symbol as it is written: T_K is a temperature."""
+OF = r"^(of|von|de|di|da|do|du|sur)\b|[的の]$"
+"""Between a spread and what it is of."""
 _SCAR = r"\bscar|scratch|kratzspur|kratzer|rayure|rasguno|arranh|graffio|zarysow|划痕|擦伤|擦過痕"
 BALL = r"\b(ball|sphere|bille|sfer|bola|esfer|kul)|kugel|球|ボール"
 NO_BALL = (
@@ -68,7 +72,9 @@ _BLOW = r"contact|kontakt|stoss|impact|beruhr|contatto|contat|zderz|uderz|接触
 _TIME = r"time|duration|zeit|dauer|temps|duree|tempo|tiempo|durat|durac|czas|时间|時間"
 _MOST = r"peak|max|massim|maks|spitze|crete|pico|picco|szczyt|stoss|impact|最大|峰值|衝撃|冲击"
 _FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
-_SPIN = r"\bspin\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
+_SWING = r"auslenk|ausschlag|deflec|swing|pend[eou]l|lacher|release|oscil|wychyl|wahad|摆|振"
+"""Of the angle to which a pendulum is drawn."""
+_SPIN = r"\bspin\b|\bgiro\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
 
 MEANS = (
     r"mean|average|avg|median\w*|mittel\w*|durchschn\w*|mw|moyenne?|moy|media|promedio|prom|"
@@ -158,8 +164,8 @@ def has(pattern: str, words: str) -> bool:
 # the first that is said
 KINDS = (
     SheetKind("note", "text",
-        (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|\bbem(erk|\b)|kommentar|komentarz|anmerk|"
-         r"remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|记录$|备注|说明|備考|コメント|メモ",)),
+        (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|\bbem(erk|\b)|kommentar|komentarz|"
+         r"\banm(erk|\b)|remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|记录$|备注|说明|備考|コメント|メモ",)),
     SheetKind("person", "text",
         (r"operator|observer|experimenter|student|te[ck]hni[ck]|tecnic|"
          r"(measured|tested|done) by|prue?fer|bediener|bearbeiter|operateur|operatrice|operatore|"
@@ -170,26 +176,26 @@ KINDS = (
          r"( (type|material|no|nr|id))?\.?$",)),
     SheetKind("temperature_K", "temperature", (r"temperatur|\btemp\b|温度|室温",), r"^t$"),
     SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)",),
-        never=f"{REBOUND}|contact|kontakt|tilt|neigung"),
+        never=f"{REBOUND}|{_SWING}|contact|kontakt|tilt|neigung"),
     SheetKind("restitution", "number",
         ("restitu[tczi]|restytuc|stoss?zahl|stossziffer|恢复系数|反発係数|はね返り係数",),
         r"^e ?n? ?\d*$|^cor ?\d*$"),
     SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
     SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
         never="drop height|fallhoe?he"),
-    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb|r|rue?ck)$",
+    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb|r|ab|rue?ck)$",
         rf"{ALONG}|before|\bvor\b|avant|prima|antes|przed|前"),
     SheetKind("drop_height_m", "length", (DROPS, HEIGHT),
         "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
     SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
-        "^(v( ?n)?|v ?(in?|imp|auf)|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|"
+        "^(v( ?n)?|v ?(in?|imp|auf|an)|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|"
         r"predkosc|速度)( normal\w*)?$", ALONG),
     SheetKind("dent_diameter_m", "length", (_DENT, rf"{_DIAMETER}|dm\b|{_WIDTH}|\bd ?\d?$")),
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
     # the largest depth under load is not what stays
-    SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent", _DEPTH),
-        "eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
+    SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent|bleibend", _DEPTH),
+        "^h ?bl$|eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
     SheetKind("contact_time_s", "time", (_BLOW, _TIME),
         r"duree|durata|duracion|duracao|^t ?(c$|[ck]ont)",
@@ -205,7 +211,7 @@ KINDS = (
         (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"
          r"sample|specimen|drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|"
          r"probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|^drop$|^n°|"
-         "编号|序号|番号|试样|試料|試番",)),
+         "编号|序号|番号|试样|試料|試番|試験 ?no",)),
     *map(plain_kind, (
         "approach_tangential_m_s", "approach_spin_rad_s", "tangential_rebound_m_s",
         "friction_impulse_ratio", "sliding_length_m", "scar_excess_m", "press_depth_m",

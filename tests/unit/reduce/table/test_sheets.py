@@ -591,3 +591,26 @@ def test_what_a_column_may_be_named_is_said_once_and_true(tmp_path):
     plain = UNDERSTOOD.replace(" (of two: dent d1, dent d2)", ", dent d1, dent d2")
     assert all(kind_of(name.strip()) for part in plain.split(";") for name in part.split(","))
     assert not read_text(tmp_path, "drop height (cm),e\n1,0.6\n").left_out
+
+
+@pytest.mark.parametrize(
+    ("header", "name"),
+    [
+        ("t_K [µs]", "contact_time_s"), ("t_K / ms", "contact_time_s"), ("T_K", "temperature_K"),
+        ("v_an / (m/s)", "impact_speed_m_s"), ("v_ab / (m/s)", "rebound_speed"),
+        ("h_bl [µm]", "permanent_depth_m"), ("試験No.", "trial"), ("Anm.", "note"),
+        ("e的标准差", "restitution"), ("Écart-type de e", "restitution"),
+        ("Auslenkwinkel [°]", None), ("Auftreffwinkel [°]", "angle_deg"),
+    ],
+)  # fmt: skip
+def test_symbols_and_short_words_say_what_they_are(header, name):
+    assert getattr(kind_of(header), "name", None) == name
+
+
+def test_no_question_offers_what_a_header_is_not(tmp_path):
+    """The angle from which a pendulum falls is none of the approach."""
+    head = "v_an (m/s);v_ab (m/s);Auslenkwinkel (°);Impronta (mm)"
+    sheet = read_text(tmp_path, f"{head}\n2;1;60;1,1\n")
+    assert columns(sheet)["Auslenkwinkel (°)"] == "left out: not understood"
+    assert "angle_deg" not in sheet.trials[0].observables
+    assert ": dent diameter? --column" in columns(sheet)["Impronta (mm)"]
