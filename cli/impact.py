@@ -108,6 +108,7 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
+    from ..core.output import write_figure
     from ..dynamics.told.band import MOST_SWEPT, swept_stds
     from ..dynamics.told.checks import swept_above_one, swept_walls
     from ..dynamics.told.draw import draw_sweep, swept_in_vain
@@ -123,7 +124,7 @@ def _sweep(
     first.to_csv(table)
     written = [table]
     if (first["outcome"] == "completed").any():
-        draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
+        write_figure(draw_sweep(setup.sweep.swept, curves, stds=stds), drawn, dpi=130)
         written.append(drawn)
     for name in swept_in_vain(setup.sweep.swept, curves):
         say(f"sweep.{name} changes nothing here")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 from ..core.tables import frame, html_table, parquet, text_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SHOWN = (
     "law", "impact_speed_m_s", "angle_deg", "restitution", "permanent_depth_m", "contact_time_s",
@@ -29,10 +32,12 @@ class Impacts:
     """Conditions and observables of n impacts, by column; the names are those of trials.csv.
 
     `columns`: each of shape (n,): the conditions, what trials.csv may hold, all other observables,
-    then `contacts`, `route` (`work` or `steps`) and `outcome`.
+    then `contacts`, `route` (`work` or `steps`) and `outcome`. `swept`: the conditions whose
+    combinations they are, each with its values.
     """
 
     columns: Mapping[str, NDArray[Any]]
+    swept: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
@@ -65,7 +70,8 @@ class Impacts:
 
     def joined(self, other: Impacts) -> Impacts:
         """Return these rows and those of `other`, which has the same columns."""
-        return Impacts({k: np.concatenate([v, other[k]]) for k, v in self.columns.items()})
+        columns = {k: np.concatenate([v, other[k]]) for k, v in self.columns.items()}
+        return Impacts(columns, self.swept)
 
     def with_stds(self, stds: Mapping[str, Array]) -> Impacts:
         """Return the columns with `NAME_std` behind each NAME; nan where there is none."""
@@ -76,7 +82,7 @@ class Impacts:
                 columns[f"{name}_std"] = np.pad(
                     stds[name], (0, len(self) - len(stds[name])), constant_values=np.nan
                 )
-        return Impacts(columns)
+        return Impacts(columns, self.swept)
 
     def to_csv(self, path: Path | str) -> None:
         """Write a CSV file, floats with all digits; an empty cell where there is no number."""
@@ -86,6 +92,16 @@ class Impacts:
     def frame(self) -> Any:
         """Return a pandas data frame; refused without pandas."""
         return frame(self.columns)
+
+    def plot(self) -> Figure:
+        """Return observables against the condition of a sweep with the most values, by law."""
+        from .told.draw import draw_sweep
+
+        if not self.swept:
+            raise InputError("no sweep", key="plot", allowed="what ds.sweep returns")
+        laws = dict.fromkeys(self["law"].tolist())
+        each = {law: {k: v[self["law"] == law] for k, v in self.columns.items()} for law in laws}
+        return draw_sweep(self.swept, {law: Impacts(columns) for law, columns in each.items()})
 
     def to_parquet(self, path: Path | str) -> None:
         """Write a Parquet file; refused without pandas or pyarrow."""

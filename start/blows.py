@@ -115,7 +115,8 @@ def sweep(
     Returns
     -------
     Impacts
-        A row a law and combination, a column an observable: `found["restitution"]`.
+        A row a law and combination, a column an observable: `found["restitution"]`,
+        `found.plot()`, `found.frame()`.
 
     Raises
     ------
@@ -141,7 +142,7 @@ def sweep(
     found, *others = (chosen.swept(one) for one in laws)
     for other in others:
         found = found.joined(other)
-    return found
+    return replace(found, swept=chosen.sweep.swept)
 
 
 def _stated(given: dict[str, Any]) -> dict[str, Any]:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from .. import fem
 from ..core.arrays import numbers, one_number
+from ..core.errors import InputError
 from ..core.inputs.input_file import path_of
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Pair
-from ..core.output import figure
+from ..core.output import figure, write_figure
 from ..core.rig import FrictionTable, value_of
 from ..core.tables import frame, html_table, text_table
 from .case_file import Level, LoadTable, case_of, read_pair
@@ -110,25 +111,39 @@ class Solved:
             made.suptitle(self.remark, fontsize=10)
         return made
 
+    def plot_fields(self) -> Figure:
+        """Return stress and plastic strain at the largest approach."""
+        from ..fem.results.fields import section
+
+        if not self.solution.snapshots:
+            raise InputError("no depth was reached", key="plot_fields", allowed="a solved pair")
+        return section(self.solution.snapshots[-1], **self._scales)
+
+    @property
+    def _scales(self) -> dict[str, float]:
+        """Of pictures of the fields: the stress that counts as one, and half the width; SI."""
+        pair = self.solution.problem.pair
+        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+        return {"Sy_min": strength, "extent": 2.5 * float(self.solution.loading.radius[-1])}
+
     def draw_fields(self, folder: str | Path, *, cut: bool = False) -> list[Path]:
         """Draw stress and plastic strain at the largest approach; return the files written.
 
         `fields-*.png`, `fields-*.vtu` for ParaView; with `cut` the bodies cut open, too.
         """
         from ..fem.results.cutaway import draw_cutaway
-        from ..fem.results.fields import draw_section, write_vtu
+        from ..fem.results.fields import section, write_vtu
 
         Path(folder).mkdir(parents=True, exist_ok=True)
-        pair, extent = self.solution.problem.pair, 2.5 * float(self.solution.loading.radius[-1])
-        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
         made: list[Path | None] = []
         for one in self.solution.snapshots:
             name = str(Path(folder) / f"fields-{one.depth:.4g}")
             made.append(write_vtu(one, Path(f"{name}.vtu")))
-            made.append(draw_section(one, Path(f"{name}.png"), Sy_min=strength, extent=extent))
+            picture, path = section(one, **self._scales), Path(f"{name}.png")
+            made.append(write_figure(picture, path, dpi=140, bbox_inches="tight"))
             if cut:
                 space = Path(f"{name}-cut.png")
-                made.append(draw_cutaway(one, space, Sy_min=strength, extent=extent))
+                made.append(draw_cutaway(one, space, **self._scales))
         return [path for path in made if path is not None]
 
     def _shown(self) -> list[list[str]]:
@@ -155,7 +170,7 @@ def case(
     speed_m_s: float | None = None,
     friction: float | None = None,
 ) -> Solved:
-    """Solve a pair by finite elements; `plot()`, `draw_fields(folder)`, `frame()` show it.
+    """Solve a pair by finite elements; `plot()`, `plot_fields()`, `frame()` show it.
 
     Parameters
     ----------

@@ -1,19 +1,22 @@
-"""Figures of the impact commands; PNG files, drawn without a screen."""
+"""Figures of impacts, drawn without a screen."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Iterable, Mapping, Sequence
 from itertools import cycle
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...core.observables import OBSERVABLES
-from ...core.output import panels, write_figure
-from ..columns import Impacts
+from ...core.output import panels
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..columns import Impacts
 
 # limit: relative difference that is none [-]: round-off
 _NONE = 1e-6
@@ -48,10 +51,10 @@ def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[st
 
 
 def draw_sweep(
-    swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], path: Path, *,
+    swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], *,
     stds: Mapping[str, np.ndarray] = MappingProxyType({}),
-) -> None:  # fmt: skip
-    """Observables against the condition with the most values, one curve a law.
+) -> Figure:  # fmt: skip
+    """Return observables against the condition with the most values, one curve a law.
 
     Where several conditions are swept, the others stand at their first values. `stds` are standard
     deviations of the first law's numbers, drawn as a band.
@@ -92,7 +95,7 @@ def draw_sweep(
     fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
-    write_figure(made, path, dpi=130)
+    return made
 
 
 def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts]) -> list[str]:

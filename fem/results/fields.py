@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...core.arrays import Array, Integers
-from ...core.output import write_figure, write_file
+from ...core.output import figure, write_file
 from ..solution import Snapshot
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def write_vtu(snapshot: Snapshot, path: Path) -> Path:
@@ -46,18 +49,15 @@ def write_vtu(snapshot: Snapshot, path: Path) -> Path:
         return write_file(path, made.read_bytes())
 
 
-def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> Path:
-    """Draw the deformed section: von Mises stress to the left, plastic strain to the right.
+def section(snapshot: Snapshot, *, Sy_min: float, extent: float) -> Figure:
+    """Return the deformed section: von Mises stress to the left, plastic strain to the right.
 
     Where nothing flows the stress, over Sy_min [Pa], is on both sides; `extent` is half the width
     of the picture [m].
     """
-    from matplotlib.figure import Figure
-
     unit, scale = ("mm", 1e3) if extent >= 1e-3 else ("um", 1e6)
     points = scale * (snapshot.points + snapshot.displacement)
-    figure = Figure(figsize=(8.4, 6.4), layout="constrained")
-    axis = figure.subplots()
+    made, ((axis,),) = figure(1, 1, size=(8.4, 6.4))
     stress, strain = snapshot.von_mises / Sy_min, 100.0 * snapshot.plastic_strain
     flows = bool((strain > 0.0).any())
     sides = [(-1.0, stress, "turbo", "von Mises stress over the weaker strength [-]")]
@@ -73,7 +73,7 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
             drawn.set(cmap=colours, clim=(0.0, most))
         if side < 0.0 or flows:
             place = "left" if flows and side < 0.0 else "right"
-            bar = figure.colorbar(drawn, ax=axis, extend="max", location=place, shrink=0.85)
+            bar = made.colorbar(drawn, ax=axis, extend="max", location=place, shrink=0.85)
             bar.set_label(label, fontsize=10)
     for name, mine in (("sphere", True), ("flat", False)):
         _outline(axis, snapshot, points, sphere=mine)
@@ -86,7 +86,7 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
         ylabel=f"height z [{unit}]",
         title=f"approach {snapshot.depth:.3g} of the sphere's radius, deformed, to scale",
     )  # fmt: skip
-    return write_figure(figure, path, dpi=140, bbox_inches="tight")
+    return made
 
 
 def _shaded(axis: Any, points: Array, quads: Integers, values: Array) -> Any:

@@ -15,15 +15,12 @@ from dentscope.start import impact
     [(np.geomspace(0.01, 1.0, 7), "log"), (np.linspace(0.01, 1.0, 7), "linear"),
      (np.geomspace(1.0, 2.0, 7), "linear"), ([0.5], "linear")],
 )  # fmt: skip
-def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(monkeypatch, tmp_path, values, scale):
-    kept = []
-    monkeypatch.setattr(draw, "write_figure", lambda made, path, dpi: kept.append(made))
+def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(values, scale):
     some = dict.fromkeys(draw.SWEPT[:4], np.ones(2 * len(values)))
     none = dict.fromkeys(draw.SWEPT[4:], np.zeros(2 * len(values)))
     swept = {"drop_height_m": list(values), "friction": [0.1, 0.2]}
     swept = swept if len(values) > 2 else {"drop_height_m": list(values)}
-    draw.draw_sweep(swept, {"fitted": some | none}, tmp_path / "a.png")
-    (made,) = kept
+    made = draw.draw_sweep(swept, {"fitted": some | none})
     assert len(made.axes) == 4
     assert {a.get_xlabel() for a in made.axes} == {"drop height [m]"}
     (line,) = made.axes[0].get_lines()

@@ -294,6 +294,8 @@ def test_a_pair_is_solved_without_a_file(tmp_path):
     found = ds.case(pair, level="smoke", max_delta_over_R=1e-3)
     last = found.rows()[-1]
     hertz = 4.0 / 3.0 * pair.E_reduced * 1e-2**2 * last["delta_over_R"] ** 1.5
+    half = 2.5e6 * found.solution.loading.radius[-1]
+    assert found.plot_fields().axes[0].get_xlim() == pytest.approx((-half, half))
     assert last["force_N"] == pytest.approx(hertz, rel=0.03)
     for wrong, key in (({"level": "fine"}, "level"), ({"friction": "0.1"}, "coefficient"),
                        ({"max_delta_over_R": "20 um"}, "max_delta_over_R"),

@@ -149,6 +149,9 @@ def test_a_pair_is_struck_at_one_speed_or_several():
     assert several["restitution"][1] == pytest.approx(one["fitted"].restitution, rel=1e-6)
     assert several["restitution"][2:] == pytest.approx([1.0, 1.0])
     assert len(repr(several).splitlines()) == several._repr_html_().count("<tr>") + 1 == 6
+    lines = several.plot().axes[0].get_lines()
+    assert [line.get_label() for line in lines] == ["fitted", "hertz"]
+    assert lines[0].get_ydata() == pytest.approx(several["restitution"][:2])
     heavier = ds.impact(pair, speed=2.0, law="fitted", mass=0.01)["fitted"]
     assert heavier.restitution < one["fitted"].restitution
     assert ds.impact("ball", speed=2.0, law="hertz")["hertz"].restitution == pytest.approx(1.0)
@@ -318,6 +321,7 @@ best: tuple[str, ...] = ds.compare_laws(pair, law=["fitted", "hertz"]).best
 e: float = ds.impact(pair, speed=2.0, law="hardening")["hardening"].restitution
 mean = ds.sweep("ball", speed=[1.0, 2.0], angle_deg=60.0)["restitution"].mean()
 ds.case(pair, level="smoke").plot().savefig("case.png")
+ds.case(pair).plot_fields().savefig("fields.png")
 drawn: list[Path] = ds.case(pair).draw_fields("fields", cut=True)
 raised: type[ValueError] = ds.core.InputError
 
