@@ -163,7 +163,7 @@ def _reduce_each(
         draw_page(pictures, page)
         typer.echo(f"all pictures: {page}")
     if left_out:
-        raise InputErrors(tuple(left_out))
+        raise InputErrors(tuple({str(error): error for error in left_out}.values()))
 
 
 def _pictures_of(into: Path | None, out: Path) -> Path:

@@ -57,9 +57,9 @@ def parts(
         while left and (not taken or sum(size[k] for k in [*taken, left[0]]) <= room):
             taken.append(left.pop(0))
         table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), highlight=False)
-        table.add_column(head[0], no_wrap=True)
+        table.add_column(head[0], overflow="fold")
         for k in taken:
-            table.add_column(head[k], justify=align, no_wrap=True)
+            table.add_column(head[k], justify=align, overflow="fold")
         for row in rows:
             table.add_row(row[0], *(row[k] for k in taken))
         tables.append(table)

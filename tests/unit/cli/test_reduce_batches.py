@@ -33,6 +33,8 @@ def test_a_folder_is_reduced_file_by_file_onto_one_page(tmp_path, capsys):
     assert "flat.csv" in told.err
     assert peak(out, "b9") == pytest.approx(800.0, rel=0.01)
     assert (out / "all-table.png").stat().st_size > 10_000
+    assert run(["reduce", "table", str(raw), "--out", str(out)]) == 2  # what all lack, once
+    assert capsys.readouterr().err.count("--holds") == 1
 
 
 def test_a_list_gives_each_file_its_own_options(tmp_path, capsys):

@@ -12,7 +12,7 @@ from dentscope import __version__
 from dentscope.cli import app as assembly
 from dentscope.cli import run
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
-from dentscope.cli.shared.terminal import parts, say
+from dentscope.cli.shared.terminal import parts, say, show_table
 from rich.console import Console
 
 COMMAND = typer.main.get_command(assembly.app)
@@ -76,6 +76,14 @@ def test_a_table_is_split_before_it_is_cut(width):
     assert "…" not in shown
     for cell in (*head[1:], *(c for row in rows for c in row)):
         assert cell in shown
+
+
+def test_a_screen_too_narrow_for_a_number_wraps_it(capsys):
+    rows = [("time to the largest force [ms]", "0.01936 +2.1e-04 -0.0032")]
+    show_table(Console(width=40, markup=False), ("", "fitted"), rows)
+    shown = capsys.readouterr().out
+    assert "…" not in shown
+    assert all(word in shown.split() for row in rows for cell in row for word in cell.split())
 
 
 def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
