@@ -111,7 +111,8 @@ def new(
             allowed="--from SHEET beside them",
         )  # fmt: skip
     write_template(folder, shape="sphere" if sphere else "rod")
-    typer.echo(f"{folder}: fill in set.toml and trials.csv, then: dentscope recordings check")
+    check = f"dentscope recordings check {quote(str(folder))}"
+    typer.echo(f"{folder}: fill in set.toml and trials.csv, then: {check}")
 
 
 def _new_from(

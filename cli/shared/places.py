@@ -15,10 +15,11 @@ _LINE = "command line"
 
 
 def folder_option(about: str, *, name: str = "--out") -> Any:
-    """Return the option of a folder that is made and written into."""
+    """Return the option of a folder that is made and written into, but not beside `--new`."""
 
-    def check(path: Path | None) -> Path | None:
-        return path if path is None else writable_folder(path, key=name)
+    def check(context: typer.Context, path: Path | None) -> Path | None:
+        unused = path is None or context.params.get("new")
+        return path if unused else writable_folder(path, key=name)
 
     return typer.Option(name, help=about, callback=check)
 

@@ -6,6 +6,7 @@ They are text alone: a template is written without loading what reads it.
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 
 from ..errors import InputError
 from ..output import write_file
@@ -168,5 +169,5 @@ def write_new(text: str, path: Path, *, command: str) -> str:
     """Write a file to start from; return what to do with it. One that exists is refused."""
     if path.exists():
         raise InputError("exists", source=str(path), allowed="a name that is free")
-    write_file(path, text.replace("{name}", path.name))
-    return f"{path}: change what differs, then: dentscope {command} {path}"
+    write_file(path, text.replace("{name}", quote(path.name)))
+    return f"{path}: change what differs, then: dentscope {command} {quote(str(path))}"

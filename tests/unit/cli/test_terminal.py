@@ -86,6 +86,15 @@ def test_a_screen_too_narrow_for_a_number_wraps_it(capsys):
     assert all(word in shown.split() for row in rows for cell in row for word in cell.split())
 
 
+def test_a_file_to_start_from_needs_no_place_for_results(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "build").touch()
+    assert run(["impact", "--new", "ball", "my ball.toml"]) == 0
+    assert capsys.readouterr().out.endswith("then: dentscope impact 'my ball.toml'\n")
+    assert run(["impact", "my ball.toml"]) == 2
+    assert "--out" in capsys.readouterr().err
+
+
 def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["campaign", "show", "space-020"]) == 0
