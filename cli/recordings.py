@@ -122,22 +122,29 @@ def _new_from(
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
     from ..recordings.template import refuse_a_set
     from ..reduce.output.into_set import store
+    from ..reduce.output.record import trial_name
     from ..reduce.output.row import Row
-    from ..reduce.table.sheet import read_sheet
+    from ..reduce.table.sheet import read_balls
 
     refuse_a_set(folder)
-    found = read_sheet(sheet, columns, sheet=of_book)
-    shape = found.shape if sphere is None else "sphere" if sphere else "rod"
-    notes = list(found.left_out)
-    if not dry_run:
-        options = {"shape": shape, "column": "; ".join(columns)}
-        notes += store(found.reduced(sheet), folder, Row(), kind="sheet", options=options).notes
-    typer.echo(f"{sheet}: {_trials(len(found.trials))} of a {shape}")
-    _tell_columns(found, notes)
+    balls = read_balls(sheet, columns, sheet=of_book)
+    still = list[str]()
+    for ball, found in balls.items():
+        shape = found.shape if sphere is None else "sphere" if sphere else "rod"
+        if not dry_run:
+            options = {"shape": shape, "column": "; ".join(columns), "ball": ball}
+            row = Row(striker=ball, trial=f"{trial_name(sheet)}-{ball}" if ball else "")
+            done = store(found.reduced(sheet), folder, row, kind="sheet", options=options,
+                         strikers=tuple(filter(None, balls)))  # fmt: skip
+            still = list(done.notes)
+        typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
+        _tell_columns(found, found.left_out)
+        if dry_run:
+            show_table(console(), *found.shown())
     if dry_run:
-        head, rows = found.shown()
-        show_table(console(), head, rows)
         return
+    for line in still:
+        typer.echo(f"  note: {line}")
     typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {quote(str(folder))}")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -42,7 +43,7 @@ density_kg_m3 = "?"
 
 _STRIKER = {
     "rod": """
-[strikers.rod]
+[strikers.NAME]
 shape = "rod"
 tip_radius_m = "?"
 radius_m = "?"
@@ -50,21 +51,24 @@ length_m = "?"                # between the centres of the two tip spheres
 mass_kg = "?"
 """,
     "sphere": """
-[strikers.ball]
+[strikers.NAME]
 shape = "sphere"
 tip_radius_m = "?"
 mass_kg = "?"
 """,
 }
 
-_TAIL = """# material = "stainless steel"
+_USUAL = {"rod": "rod", "sphere": "ball"}
+_METAL = """# material = "stainless steel"
 density_kg_m3 = "?"
 E_Pa = "?"
 nu = "?"
 Sy_Pa = "?"
 # tip_flat_radius_m = 1.0e-3
 # inertia_kg_m2 = 4.0e-3
+"""
 
+_TAIL = """
 [friction]
 # coefficient = { value = 0.15, std = 0.05 }
 
@@ -86,9 +90,11 @@ Sy_Pa = "?"
 """
 
 
-def template_text(shape: Shape, name: str) -> str:
-    """Return set.toml with the values of both bodies to be filled in, and the set's name."""
-    return _HEAD.replace('"NAME"', json.dumps(name, ensure_ascii=False)) + _STRIKER[shape] + _TAIL
+def template_text(shape: Shape, name: str, strikers: Sequence[str] = ()) -> str:
+    """Return set.toml with the values of all bodies to be filled in, and the set's name."""
+    keys = [json.dumps(k, ensure_ascii=False) for k in strikers] or [_USUAL[shape]]
+    bodies = "".join((_STRIKER[shape] + _METAL).replace("NAME", key) for key in keys)
+    return _HEAD.replace('"NAME"', json.dumps(name, ensure_ascii=False)) + bodies + _TAIL
 
 
 def refuse_a_set(folder: Path) -> None:

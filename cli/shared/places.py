@@ -18,8 +18,9 @@ def folder_option(about: str, *, name: str = "--out") -> Any:
     """Return the option of a folder that is made and written into, but not beside `--new`."""
 
     def check(context: typer.Context, path: Path | None) -> Path | None:
-        unused = path is None or context.params.get("new")
-        return path if unused else writable_folder(path, key=name)
+        if path is None or context.params.get("new"):
+            return path
+        return writable_folder(path, key=name)
 
     return typer.Option(name, help=about, callback=check)
 

@@ -9,7 +9,7 @@ it would be, has been read without a mistake.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -57,17 +57,18 @@ def store(
     kind: str,
     options: Mapping[str, Any],
     setup: SetFile | None = None,
+    strikers: Sequence[str] = (),
 ) -> Stored:
     """Write a reduction into a set, new or existing, in a row with conditions that the file lacks.
 
-    `kind` and `options` are kept in the record. A new set gets `setup`, or else one to fill in. A
-    set that would not be sound is refused.
+    `kind` and `options` are kept in the record. A new set gets `setup`, or else one to fill in, of
+    these `strikers`. A set that would not be sound is refused.
     """
     # another reduction may write the same set: what it added must not be lost
     with locked(folder):
         finish_pending(folder)
         shape = _shape(kind, options)
-        before, text = _set_before(folder, setup, shape=shape)
+        before, text = _set_before(folder, setup, shape=shape, strikers=strikers)
         striker = _striker(before, row)
         after, curves = before, {}
         names = []
@@ -155,7 +156,9 @@ def _stated_body(shape: Shape, options: Mapping[str, Any]) -> dict[str, Measured
     return {key: value for key, value in body.items() if value is not None}
 
 
-def _set_before(folder: Path, setup: SetFile | None, *, shape: Shape) -> tuple[RecordingSet, str]:
+def _set_before(
+    folder: Path, setup: SetFile | None, *, shape: Shape, strikers: Sequence[str]
+) -> tuple[RecordingSet, str]:
     """Return the set as it is, or an empty one, and its set.toml as text."""
     if folder.exists() and not folder.is_dir():
         raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
@@ -163,7 +166,7 @@ def _set_before(folder: Path, setup: SetFile | None, *, shape: Shape) -> tuple[R
     if not file.exists():
         if setup is not None:
             return _empty(setup, None), setup_text(setup)
-        text = template_text(shape, folder.resolve().name)
+        text = template_text(shape, folder.resolve().name, strikers)
         content = without_marks(tomllib.loads(text))[0]
         return _empty(parse_model(content, SetFile, source=str(file)), None), text
     content, _ = without_marks(read_toml(file))

@@ -3,6 +3,6 @@
 Every column and every cell that is not taken is told: nothing disappears without a line.
 """
 
-from .file import Sheet, read_sheet
+from .file import Sheet, read_balls, read_sheet
 
-__all__ = ["Sheet", "read_sheet"]
+__all__ = ["Sheet", "read_balls", "read_sheet"]

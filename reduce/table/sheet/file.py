@@ -13,6 +13,7 @@ import numpy as np
 from ....core.errors import InputError
 from ....core.inputs.csv_table import rows_with, selection
 from ....core.inputs.input_file import checked_file
+from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
 from ....recordings.columns import MEASURED
 from ....recordings.template import Shape
@@ -25,7 +26,7 @@ from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of
 from .headers import Head, columns_of, given_columns, head_of
 from .kinds import without_unit
-from .rows import SheetRows, trials_of
+from .rows import SeveralBallsError, SheetRows, trials_of
 from .words import APPROACHES, ROD, bare
 
 _TYPED = str.maketrans({
@@ -121,6 +122,20 @@ def read_sheet(
         SheetRows(rows, head.end, kept, decimals, source), told
     )
     return Sheet(trials, became, (*left, *others), striker)
+
+
+def read_balls(path: Path, columns: Sequence[str] = (), *, sheet: str = "") -> dict[str, Sheet]:
+    """Read a laboratory's sheet by the names of its balls, "" for the only one.
+
+    Refused, as `read_sheet` refuses it, where not every row says which it is of.
+    """
+    try:
+        return {"": read_sheet(path, columns, sheet=sheet)}
+    except SeveralBallsError as several:
+        if not several.balls or not all(map(names_a_file, several.balls)):
+            raise
+        balls = several.balls.items()
+    return {ball: read_sheet(path, columns, sheet=sheet, select=only) for ball, only in balls}
 
 
 def _place(head: Head, name: str, source: str, key: str) -> int:

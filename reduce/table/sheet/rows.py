@@ -90,7 +90,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
         told = [*told, *((c.header, "left out: of a later bounce") for c in later)]
         once = [replace(c, taken=0) for c in columns if c not in later]
         return trials_of(replace(sheet, columns=once), told)
-    _check_one_ball(sheet, [k for k, *_ in found.trials])
+    _check_one_ball(sheet, [k for k, *_ in found.trials], apart=not found.from_above)
     striker = _striker(found.body)
     naming = naming_of(rows, [k for k, *_ in found.trials], columns)
     stds = scatter_of([(t.observables, seen) for _, t, seen in found.trials])
@@ -193,21 +193,34 @@ def _no_trial(
     return "" if last else "no drop height or speed"
 
 
-def _check_one_ball(sheet: SheetRows, taken: Sequence[int]) -> None:
-    """Refuse rows of several balls: a set has one striker a trial, and one body to fill in."""
+class SeveralBallsError(InputError):
+    """Rows of several balls: names of strikers, and what selects the rows of each.
+
+    None where a row does not say which, or takes its approach from one above.
+    """
+
+    balls: Mapping[str, str]
+
+
+def _check_one_ball(sheet: SheetRows, taken: Sequence[int], *, apart: bool) -> None:
+    """Refuse rows of several balls: each is a striker, read `apart` where that can be."""
     for column in (c for c in sheet.columns if c.kind.name in ("ball", *BODY)):
         cells = [sheet.rows[k - 1][column.place] for k in taken]
         said = [*dict.fromkeys(filter(None, cells))]
-        apart = 1 < len(said) < len(cells)  # else each trial has its own of one kind
+        several = 1 < len(said) < len(cells)  # else each trial has its own of one kind
         if column.kind.name != "ball":
             sizes = [v.value for c in said if (v := number_in(c, column, sheet.decimals))]
-            apart = bool(sizes) and max(sizes) > _ONE_BALL * min(sizes)
-        if apart:
-            raise InputError(
+            several = bool(sizes) and max(sizes) > _ONE_BALL * min(sizes)
+        if several:
+            error = SeveralBallsError(
                 f"several balls: {', '.join(said[:4])}", source=sheet.source, key=column.header,
-                allowed=f"one a set: dentscope reduce table {sheet.source} --holds trials --select "
-                f"'{column.header}={said[0]}' --into SET",
+                allowed=f"one at a time: dentscope reduce table {sheet.source} --holds trials "
+                f"--select '{column.header}={said[0]}' --into SET",
             )  # fmt: skip
+            kind = "" if column.kind.name == "ball" else "ball "
+            parted = said if apart and all(cells) else []
+            error.balls = {f"{kind}{cell}": f"{column.header}={cell}" for cell in parted}
+            raise error
 
 
 def _striker(body: Mapping[str, set[Measured]]) -> dict[str, Measured]:

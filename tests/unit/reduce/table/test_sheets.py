@@ -576,6 +576,26 @@ def test_a_set_has_one_ball_and_a_sheet_of_several_is_asked_which(tmp_path, ball
     assert restitutions(only) == [0.5, 0.6]
 
 
+def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, capsys):
+    from dentscope.cli import run
+
+    file, folder = tmp_path / "drops.csv", tmp_path / "set"
+    rows = "K1;1;20;5\nK2;1;20;10\nK1;2;40;9\nK2;2;40;20\n"
+    file.write_text(f"Kugel;Nr.;Fallhöhe (cm);Rückprallhöhe (cm)\n{rows}", encoding="utf-8")
+    assert run(["recordings", "new", str(folder), "--from", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert "2 trials of K1" in told
+    assert told.count("to fill in:") == 1
+    made = read(folder, unfinished=True)
+    assert list(made.setup.strikers) == ["K1", "K2"]
+    assert made.trials.striker == ("K1", "K1", "K2", "K2")
+    assert made.trials.observables["restitution"] ** 2 == pytest.approx([0.25, 0.225, 0.5, 0.5])
+    # a height that is written once is that of the row above, whatever its ball
+    file.write_text(file.read_text(encoding="utf-8").replace("K2;2;40", "K2;2;"), encoding="utf-8")
+    assert run(["recordings", "new", str(tmp_path / "other"), "--from", str(file)]) == 2
+    assert "several balls: K1, K2" in capsys.readouterr().err
+
+
 def test_one_ball_may_be_weighed_again_and_each_drop_have_its_own(tmp_path):
     text = "drop height (cm),e,Ball mass (g),Ball no\n10,0.6,4.08,1\n20,0.5,4.09,2\n"
     sheet = read_text(tmp_path, text)
