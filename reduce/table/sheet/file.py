@@ -24,10 +24,10 @@ from ..packed import TABLE_BYTES
 from ..picture import draw_trials
 from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of
-from .headers import Head, columns_of, given_columns, head_of
-from .kinds import without_unit
+from .headers import Head, SheetColumn, columns_of, given_columns, head_of
+from .kinds import SUMMARY, without_unit
 from .rows import SeveralBallsError, SheetRows, trials_of
-from .words import APPROACHES, ROD, bare
+from .words import APPROACHES, BODY, ROD, bare
 
 _TYPED = str.maketrans({
     "\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u3000": " ", "℃": "°C",
@@ -90,11 +90,11 @@ def read_sheet(
     """Read a laboratory's sheet: a workbook, or a text table in any usual encoding.
 
     Drop and rebound height give the restitution, the root of their ratio, and one in a column of
-    its own counts where they do not; where it differs from them, that is told. A drop height that
-    is written once for several rows holds for the rows below; several columns of one quantity are
-    readings of one trial, their mean is taken. A column of trials names them where its entries
-    differ; other texts become notes; a ball's diameter and mass that are the same in all rows are
-    the striker's.
+    its own counts where they do not; where it differs from them, that is told. A drop height or a
+    ball that is written once for several rows holds for the rows below; several columns of one
+    quantity are readings of one trial, their mean is taken. A column of trials names them where its
+    entries differ; other texts become notes; a ball's diameter and mass that are the same in all
+    rows are the striker's.
 
     `columns`, `HEADER=quantity unit` each, say what headers mean where they do not themselves;
     `sheet` takes the place of the first whose headers are understood; `select`, `COLUMN=VALUE`,
@@ -111,6 +111,7 @@ def read_sheet(
     for said in given:
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
+    _fill_balls(rows[head.end :], kept)
     if select:
         name, value = selection(select, source=source)
         place = _place(head, name, source, "select")
@@ -122,6 +123,18 @@ def read_sheet(
         SheetRows(rows, head.end, kept, decimals, source), told
     )
     return Sheet(trials, became, (*left, *others), striker)
+
+
+def _fill_balls(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> None:
+    """Write a ball that stands once, merged or above, into the rows of numbers below it."""
+    numbers = [c.place for c in columns if c.kind.quantity != "text" and c.kind.name not in BODY]
+    for place in (c.place for c in columns if c.kind.name in ("ball", *BODY) and not c.spread):
+        last = ""
+        for row in rows:
+            if row[place] and not SUMMARY.fullmatch(bare(row[place])):
+                last = row[place]
+            elif not row[place] and any(row[k] for k in numbers):
+                row[place] = last
 
 
 def read_balls(path: Path, columns: Sequence[str] = (), *, sheet: str = "") -> dict[str, Sheet]:

@@ -194,7 +194,7 @@ KINDS = (
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
     # the largest depth under load is not what stays
-    SheetKind("permanent_depth_m", "length", (f"{_DENT}|residual|permanent|bleibend", _DEPTH),
+    SheetKind("permanent_depth_m", "length", (f"{_DENT}|residu|permanent|bleibend", _DEPTH),
         "^h ?bl$|eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
     SheetKind("contact_time_s", "time", (_BLOW, _TIME),

@@ -6,7 +6,7 @@ import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.table.file import read_columns
-from dentscope.reduce.table.sheet import read_sheet
+from dentscope.reduce.table.sheet import read_balls, read_sheet
 from dentscope.reduce.table.sheet.kinds import kind_of
 from dentscope.reduce.table.sheet.words import UNDERSTOOD
 
@@ -594,6 +594,15 @@ def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, capsys):
     file.write_text(file.read_text(encoding="utf-8").replace("K2;2;40", "K2;2;"), encoding="utf-8")
     assert run(["recordings", "new", str(tmp_path / "other"), "--from", str(file)]) == 2
     assert "several balls: K1, K2" in capsys.readouterr().err
+
+
+def test_a_ball_that_is_written_once_holds_for_the_rows_below(tmp_path):
+    rows = "K1;20;5\n;40;9\nMittel;;7\nK2;20;10\n;40;20\n"
+    file = tmp_path / "a.csv"
+    file.write_text(f"Kugel;Fallhöhe (cm);Rückprallhöhe (cm)\n{rows}", encoding="utf-8")
+    each = {ball: restitutions(sheet) for ball, sheet in read_balls(file).items()}
+    assert each["K1"] == pytest.approx([0.5, math.sqrt(0.225)])
+    assert each["K2"] == pytest.approx([math.sqrt(0.5)] * 2)
 
 
 def test_one_ball_may_be_weighed_again_and_each_drop_have_its_own(tmp_path):
