@@ -45,11 +45,11 @@ class Family(NamedTuple):
 
 
 def family_of(odds: Odds) -> Family | None:
-    """Return the family that takes part with `RULES.family_sure` or more, the most probable."""
+    """Return the family that takes part with `RULES.together` or more, the most probable."""
     found = []
     for name, (title, members) in FAMILIES.items():
         p = sum(q for label, q in odds.probability.items() if set(odds.names[label]) & set(members))
         own = {m: q for m, q in odds.inclusion.items() if m in members and q >= RULES.supported}
-        if p >= RULES.family_sure and own:
+        if p >= RULES.together and own:
             found.append(Family(name, title, p, own))
     return max(found, key=lambda f: f.probability, default=None)

@@ -29,6 +29,8 @@ PRIORS = dict(RULES.priors)
 beside the first."""
 SURE = RULES.sure
 STRENGTH = "target.Sy_Pa"
+METAL = frozenset({"strain-rate-hardening", "work-hardening"})
+"""What every metal does."""
 
 
 @dataclass(frozen=True)
@@ -175,9 +177,10 @@ def _acts(ranking: Ranking, screened: Screened) -> bool:
 
 
 def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
-    """Ln prior of each single explanation: mechanisms alike; wrong numbers by their kind.
+    """Ln prior of each single explanation: mechanisms alike, but for what every metal does.
 
-    Kinds share alike, but for the strength of what is struck, and within a kind the bodies.
+    Wrong numbers share by their kind: alike, but for the strength of what is struck, and within a
+    kind by the bodies.
     """
     kinds: dict[str, list[str]] = {}
     named = []
@@ -186,12 +189,15 @@ def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
             kinds.setdefault(m.kind if m.key != STRENGTH else STRENGTH, []).append(m.name)
         else:
             named.append(m.name)
-    found = {name: math.log(PRIORS["mechanisms"] / len(named)) for name in named}
+    found = _shared("mechanisms", {n: RULES.every_metal if n in METAL else 1.0 for n in named})
     weight = {kind: RULES.strength_wrong if kind == STRENGTH else 1.0 for kind in kinds}
-    for kind, names in kinds.items():
-        own = PRIORS["inputs"] * weight[kind] / sum(weight.values()) / len(names)
-        found |= dict.fromkeys(names, math.log(own))
-    return found
+    alike = {n: weight[kind] / len(names) for kind, names in kinds.items() for n in names}
+    return found | _shared("inputs", alike)
+
+
+def _shared(kind: str, weight: Mapping[str, float]) -> dict[str, float]:
+    """Ln of the shares of a prior."""
+    return {n: math.log(PRIORS[kind] * w / sum(weight.values())) for n, w in weight.items()}
 
 
 def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[str, float]]:
