@@ -66,7 +66,14 @@ def slip_speed(m, w, mode, ahead, z, dz, moved):
         return mode * abs(speed)
     if branch[fo.RECEDING] > 0.0:
         return speed - mode * (later / stiff - limit / stiffness) / ahead
-    return speed - mode * (later - limit) / (ahead * stiffness)
+    grows = later - limit
+    if phase == at.LOAD and mode * speed * ahead * stiffness < grows:
+        # a jump of the force is no rate: it counts where it has grown so fast up to here as well
+        for j in range(len(z)):
+            moved[j] = z[j] - ahead * dz[j]
+        _, before, _, _ = contact(m, w, moved, seen)
+        grows = min(grows, limit - before)
+    return speed - mode * grows / (ahead * stiffness)
 
 
 @njit(cache=True, **PLAIN)

@@ -159,7 +159,11 @@ class Motion:
         if k.receding:
             change = self.limit(second, k) / later - self.limit(first, k) / stiff
             return v - k.sign * change / ahead
-        return v - k.sign * (self.limit(second, k) - self.limit(first, k)) / (ahead * stiff)
+        grows = self.limit(second, k) - self.limit(first, k)
+        if k.phase == LOADING:
+            # a jump of the force is no rate
+            grows = min(grows, self.limit(z, k) - self.limit(z - ahead * rate, k))
+        return v - k.sign * grows / (ahead * stiff)
 
     def held(self, z: Array, k: Contact) -> float:
         """Force of the tangential spring on the striker [N]."""

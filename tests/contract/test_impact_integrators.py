@@ -115,10 +115,8 @@ def test_integrators_agree_on_contacts_that_give_way_sideways() -> None:
         scene = random_scene(rng, number)
         law = (HERTZ, JACKSON_GREEN, KOGUT_ETSION)[number % 3]
         yielding = Friction(scene.friction.mu or 0.2, stiffness=float(rng.uniform(0.4, 1.4)))
-        # the force of Kogut and Etsion jumps at the borders of their ranges: a digit less
-        bound = 1e-7 if law is KOGUT_ETSION else 1e-8
         assert_agree(
-            scene.with_(law=law, friction=yielding), bound, settings=Settings(tolerance=1e-11)
+            scene.with_(law=law, friction=yielding), 1e-8, settings=Settings(tolerance=1e-11)
         )
 
 
