@@ -112,13 +112,14 @@ def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish:
     from ..core.output import write_file
     from ..fitting.coefficients import write_coefficients
     from ..fitting.refit import refit_hardening
+    from ..fitting.table import read_sources
     from ..models.coefficients import COEFFICIENTS_FILE, drawn_from, read_coefficients
 
     content = read_coefficients()
     if content is None:
         raise InputError("none in use", key="coefficients", allowed="`dentscope fit` first")
     content["drawn_from"] = drawn_from()
-    if not refit_hardening(content, files, progress=console.print):
+    if not refit_hardening(content, read_sources(files), progress=console.print):
         raise InputError("no metals that harden", key="campaigns", allowed="design hardening")
     _show_hardening(console, content)
     written = write_coefficients(content, out / "fitted.json")
@@ -191,13 +192,15 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     from ..fitting.hardening import hardening_records, judge_hardening
     from ..fitting.refit import judged
     from ..fitting.report import error_rows, hardening_rows, uncertainty_rows
+    from ..fitting.table import read_sources
     from ..models.coefficients import drawn_from
 
-    found = judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
+    sources = read_sources(files)
+    found = judged(sources, [_law_in_use("compact"), _law_in_use("fitted")])
     count = len(found.names)
     _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
     _show(console, uncertainty_rows(found.within))
-    hard = hardening_records(files, held_out=True)
+    hard = hardening_records(sources, held_out=True)
     if hard:
         errors, within = judge_hardening(_hardening_in_use(), hard)
         _show(console, hardening_rows({f"{len(hard)} pairs that harden": errors}))

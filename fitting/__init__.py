@@ -5,7 +5,7 @@ from __future__ import annotations
 from .fit import FormFit, fit_tables
 from .laws import FittedLaws, fit_laws
 from .prediction import Errors
-from .table import ResidualTable, Table, read_tables
+from .table import ResidualTable, Table, read_sources, tables_of
 
 __all__ = [
     "Errors",
@@ -15,5 +15,6 @@ __all__ = [
     "Table",
     "fit_laws",
     "fit_tables",
-    "read_tables",
+    "read_sources",
+    "tables_of",
 ]

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..campaigns import digest_of_source, read_curves
+from ..campaigns import digest_of_source
 from ..core.arrays import Array
 from ..core.output import write_file
 from ..core.provenance import environment
@@ -25,12 +25,10 @@ from ..models.correction import CHANNELS, GROUPS
 from ..models.hardening import CORRECTED
 from .hardening import HardeningFit
 from .laws import FittedLaws
-from .table import Table
+from .table import Sources, Table
 
 
-def coefficients_content(
-    laws: FittedLaws, table: Table, campaigns: Sequence[Path]
-) -> dict[str, Any]:
+def coefficients_content(laws: FittedLaws, table: Table, campaigns: Sources) -> dict[str, Any]:
     """Return the content of the coefficients file: laws.
 
     And the rows and campaigns they are from.
@@ -67,10 +65,14 @@ def coefficients_content(
     }
 
 
-def _made_from(campaigns: Sequence[Path]) -> dict[str, Any]:
+def _made_from(campaigns: Sources) -> dict[str, Any]:
     return {
         "campaigns": [
-            {"sha256": digest_of_source(path), "accuracy": _levels(path)} for path in campaigns
+            {
+                "sha256": digest_of_source(path),
+                "accuracy": sorted({record.case.accuracy.level for record in records}),
+            }
+            for path, records in campaigns.items()
         ],
         "numerics_version": NUMERICS_VERSION,
         "environment": environment(),
@@ -78,7 +80,7 @@ def _made_from(campaigns: Sequence[Path]) -> dict[str, Any]:
 
 
 def hardening_content(
-    fit: HardeningFit, campaigns: Sequence[Path], *, judged: Mapping[str, Any]
+    fit: HardeningFit, campaigns: Sources, *, judged: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the part of the coefficients file on metals that harden.
 
@@ -128,7 +130,3 @@ def _rows_on_one_line(text: str) -> str:
         lambda m: "[" + ", ".join(m.group(1).replace(",", " ").split()) + "]",
         text,
     )
-
-
-def _levels(campaign: Path) -> list[str]:
-    return sorted({record.case.accuracy.level for record in read_curves(campaign)})

@@ -6,16 +6,16 @@ the law at that depth. Whole pairs are left out in turn.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from ..campaigns import CaseRecord, read_curves
+from ..campaigns import CaseRecord
 from ..core.arrays import Array
 from ..core.material import Pair
 from ..models import critical_depth
@@ -36,7 +36,7 @@ from ..models.table import energy_exponent
 from ..models.uncertainty import Uncertainty
 from .calibrate import SIGMAS
 from .rules import RULES
-from .table import HELD_OUT, is_current
+from .table import Sources, is_current, is_held_out
 
 
 class _Case(NamedTuple):
@@ -63,26 +63,24 @@ class HardeningFit:
     combinations: int
 
 
-def hardening_records(paths: Sequence[Path], *, held_out: bool = False) -> list[CaseRecord]:
+def hardening_records(sources: Sources, *, held_out: bool = False) -> list[CaseRecord]:
     """Cases of metals with a flow curve that no rate and no heat changes, made by this solver.
 
     Those that are kept out of every fit where `held_out`, else the others.
     """
     found: dict[str, CaseRecord] = {}
-    for path in paths:
-        for record in read_curves(path):
-            flows = [b.flow for b in (record.case.pair.sphere, record.case.pair.flat) if b.flow]
-            plain = all(f.rate is None and f.heating is None for f in flows)
-            judges = record.case.name.startswith(HELD_OUT)
-            if flows and plain and judges == held_out and is_current(record):
-                found[record.id] = record
+    for record in itertools.chain.from_iterable(sources.values()):
+        flows = [b.flow for b in (record.case.pair.sphere, record.case.pair.flat) if b.flow]
+        plain = all(f.rate is None and f.heating is None for f in flows)
+        if flows and plain and is_held_out(record) == held_out and is_current(record):
+            found[record.id] = record
     return list(found.values())
 
 
-def judged_designs(law: HardeningLaw, paths: Sequence[Path]) -> dict[str, dict[str, Any]]:
+def judged_designs(law: HardeningLaw, sources: Sources) -> dict[str, dict[str, Any]]:
     """Errors and shares within the stated deviations, by the design that no fit reads."""
     designs: dict[str, list[CaseRecord]] = {}
-    for record in hardening_records(paths, held_out=True):
+    for record in hardening_records(sources, held_out=True):
         designs.setdefault(record.case.name.rsplit("-", 1)[0], []).append(record)
     found = {}
     for name, records in sorted(designs.items()):

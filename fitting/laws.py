@@ -6,12 +6,15 @@ combinations are left out in turn, and everything is found again without them.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..core.arrays import Mask
+from ..core.processes.threads import in_one_thread
 from ..models.closed_form import Coefficients
 from ..models.correction import PairCorrection
 from ..models.uncertainty import Calibration
@@ -53,6 +56,7 @@ class FittedLaws:
     fitted: JudgedLaws
 
 
+@in_one_thread
 def fit_laws(table: Table, turns: ResidualTable) -> FittedLaws:
     """Fit both laws to rows of a campaign, and judge them on combinations left out."""
     fit, ripple = fit_tables(table, turns), np.stack(ripple_of(table))
@@ -110,12 +114,12 @@ def left_out(
     count = len(table.pairs)
     # a fixed shuffle: neighbours of a design do not leave together, and a rerun gives the same
     fold = np.random.default_rng(1).permutation(count) % min(folds, count)
-    collected: list[Prediction] = []
-    for number in range(min(folds, count)):
-        out, out_turns = fold[table.case] == number, fold[turns.case] == number
-        found = predict_without(~out, ~out_turns)
-        before = collected or found
-        collected = [a.mix(b, out, out_turns) for a, b in zip(before, found, strict=True)]
+    outs = [(fold[table.case] == k, fold[turns.case] == k) for k in range(min(folds, count))]
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
+        found = list(pool.map(lambda out: predict_without(~out[0], ~out[1]), outs))
+    collected = found[0]
+    for (out, out_turns), one in zip(outs, found, strict=True):
+        collected = [a.mix(b, out, out_turns) for a, b in zip(collected, one, strict=True)]
     return collected
 
 

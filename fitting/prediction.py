@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 
 from ..core.arrays import Array
-from ..models.closed_form import Coefficients, PairNumbers, contact, of_pair
+from ..models.closed_form import (
+    Coefficients,
+    PairNumbers,
+    contact,
+    force_at,
+    of_pair,
+    share_at,
+    spread_at,
+)
 from .rules import RULES
 from .table import ResidualTable, Table
 
@@ -69,13 +77,14 @@ def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
 
 def predict_by(numbers: PairNumbers, table: Table, turns: ResidualTable) -> Prediction:
     """Draw every case's curves from its numbers, fields of shape (n_cases,) or single numbers."""
-    loaded, turned = (
-        contact(rows.D, PairNumbers(*(_each(x, rows.case) for x in numbers)))
-        for rows in (table, turns)
+    pressed, released = (
+        PairNumbers(*(_each(x, rows.case) for x in numbers)) for rows in (table, turns)
     )
-    return Prediction(
-        loaded.F, loaded.a, loaded.share, turned.left, turned.phi * turned.left, turned.N
-    )
+    y, phi, a = spread_at(table.D, pressed)
+    F = force_at(table.D, a, pressed)
+    share = share_at(table.D, y, F, a, phi, pressed)
+    at = contact(turns.D, released)
+    return Prediction(F, a, share, at.left, at.phi * at.left, at.N)
 
 
 def _each(number: Any, case: Any) -> Any:

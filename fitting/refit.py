@@ -7,7 +7,7 @@ the file is a law wherever one is named (`models.law_file`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from .hardening import fit_hardening, hardening_records, judged_designs
 from .laws import FittedLaws, fit_laws
 from .prediction import Errors, errors_of, predict_by
 from .report import Within
-from .table import ResidualTable, Table, read_tables
+from .table import ResidualTable, Sources, Table, read_sources, tables_of
 
 Progress = Callable[[str], None]
 
@@ -58,14 +58,15 @@ class Refit:
     hardens: bool
 
 
-def refit(sources: Sequence[Path], *, progress: Progress = lambda _: None) -> Refit:
+def refit(paths: Iterable[Path], *, progress: Progress = lambda _: None) -> Refit:
     """Fit the closed forms to the cases of runs and published parts.
 
     A combination in two sources counts once, the later wins. `progress` is called with a line
     before each step. Refused where a source is missing or damaged, or they hold no completed
     elastic-plastic case.
     """
-    table, turns = read_tables(sources)
+    sources = read_sources(paths)
+    table, turns = tables_of(sources)
     progress(
         f"{', '.join(map(str, sources))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
         f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."
@@ -81,7 +82,7 @@ def refit(sources: Sequence[Path], *, progress: Progress = lambda _: None) -> Re
 
 
 def refit_hardening(
-    content: dict[str, Any], sources: Sequence[Path], *, progress: Progress = lambda _: None
+    content: dict[str, Any], sources: Sources, *, progress: Progress = lambda _: None
 ) -> bool:
     """Fit the law of metals that harden to the other laws of a content, and put it there.
 
@@ -98,9 +99,9 @@ def refit_hardening(
     return True
 
 
-def judged(sources: Sequence[Path], laws: Sequence[ClosedForm]) -> Judged:
+def judged(sources: Sources, laws: Sequence[ClosedForm]) -> Judged:
     """Return the errors of laws on the cases that no fit reads; sources without one are refused."""
-    table, turns = read_tables(sources, held_out=True)
+    table, turns = tables_of(sources, held_out=True)
     errors, shares = [], {}
     for law in laws:
         numbers = law.numbers(table.bodies)

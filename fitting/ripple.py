@@ -7,6 +7,7 @@ contact is plastic. A local cubic in ln Delta over the neighbouring depths shows
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .rules import RULES
 from .table import Table
 
 
+@lru_cache(maxsize=1)
 def without_ripple(table: Table) -> Table:
     """Return the rows with ln F and ln a replaced by local cubics in ln Delta."""
     return replace(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -19,13 +19,16 @@ from ..models.fitted import bodies_of
 from ..models.table import energy_exponent
 from .rules import RULES
 
+Sources = Mapping[Path, Sequence[CaseRecord]]
+"""Runs and published parts, each with its completed cases."""
+
 HELD_OUT = ("validation", "challenge")
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
 
 _COARSEST = "smoke"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Table:
     """Loading rows of all cases; every array has shape (n,) and is dimensionless.
 
@@ -103,10 +106,13 @@ def _masked(table: Any, mask: Mask) -> dict[str, Any]:
     return {k: v[mask] for k, v in columns.items() if isinstance(v, np.ndarray)}
 
 
-def read_tables(
-    paths: Path | Sequence[Path], *, held_out: bool = False
-) -> tuple[Table, ResidualTable]:
-    """Read runs and published parts into the two tables; without a completed case refuse them.
+def read_sources(paths: Iterable[Path]) -> Sources:
+    """Read runs and published parts, each once."""
+    return {path: read_curves(path) for path in paths}
+
+
+def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, ResidualTable]:
+    """Return the two tables of runs and published parts; without a completed case refuse them.
 
     A combination in two of them counts once, the later wins; a case that the present solver made
     wins over one that an earlier version of it made. With `held_out` only the cases that are kept
@@ -114,10 +120,8 @@ def read_tables(
     count only where none is finer. Metals that harden or feel the rate are left out: the forms know
     neither.
     """
-    paths = [paths] if isinstance(paths, Path) else list(paths)
     chosen: dict[object, CaseRecord] = {}
-    found = [r for path in paths for r in read_curves(path)]
-    found = [r for r in found if r.case.name.startswith(HELD_OUT) == held_out]
+    found = [r for of in sources.values() for r in of if is_held_out(r) == held_out]
     for record in _fine_ones([r for r in found if _fitted(r.case.pair)]):
         key = tuple(np.round(_key(record.case.pair), 9))
         if key not in chosen or is_current(record) or not is_current(chosen[key]):
@@ -126,7 +130,7 @@ def read_tables(
         raise InputError(
             "no completed elastic-plastic case"
             + (f" named {' or '.join(HELD_OUT)}-..." if held_out else ""),
-            source=", ".join(map(str, paths)),
+            source=", ".join(map(str, sources)),
             allowed="a finished campaign",
         )
     records = list(chosen.values())
@@ -139,6 +143,11 @@ def _fitted(pair: Pair) -> bool:
 
 def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:
     return [r for r in records if r.case.accuracy.level != _COARSEST] or records
+
+
+def is_held_out(record: CaseRecord) -> bool:
+    """Whether a case is kept out of every fit."""
+    return record.case.name.startswith(HELD_OUT)
 
 
 def is_current(record: CaseRecord) -> bool:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from dentscope.core import Material, Pair
-from dentscope.fitting import fit_tables, read_tables
+from dentscope.fitting import fit_tables, read_sources, tables_of
 from dentscope.fitting.table import ResidualTable, Table
 from dentscope.models.closed_form import COEFFICIENTS
 
@@ -36,7 +36,7 @@ def plain(body):
 
 
 def content(paths):
-    table, turns = read_tables(paths)
+    table, turns = tables_of(read_sources(paths))
     third = table.rows(np.arange(len(table.D)) % EVERY == 0)
     fit = fit_tables(third, turns)
     whole = fit_tables(table, turns)

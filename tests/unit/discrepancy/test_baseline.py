@@ -14,6 +14,7 @@ from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.report.series import points_of
 from dentscope.dynamics import Approach, Scene, Striker, strike
 from dentscope.fitting.hardening import hardening_records
+from dentscope.fitting.table import read_sources
 from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.uncertainty import METAL, WITH_CURVE
 from dentscope.recordings import read
@@ -26,9 +27,8 @@ NOISE = {"restitution": 0.004, "permanent_depth_m_relative": 0.008}
 @pytest.fixture(scope="module")
 def solved() -> PairTable:
     """Finite elements of a flat that hardens, which no fit has read."""
-    record = next(
-        r for r in hardening_records([DATA], held_out=True) if r.case.name.endswith("-05")
-    )
+    records = hardening_records(read_sources([DATA]), held_out=True)
+    record = next(r for r in records if r.case.name.endswith("-05"))
     pair, c = record.case.pair, record.curve
     rows = []
     for u in record.unloadings:

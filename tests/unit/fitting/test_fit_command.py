@@ -12,7 +12,7 @@ from dentscope.core.flow import Flow, swift
 from dentscope.fitting import table
 from dentscope.fitting.prediction import Errors
 from dentscope.fitting.report import markdown
-from dentscope.fitting.table import read_tables
+from dentscope.fitting.table import read_sources, tables_of
 from dentscope.models.coefficients import read_coefficients
 from dentscope.studies.closed_form.page import (
     BEGIN,
@@ -118,9 +118,9 @@ class Record:
 def test_cases_of_low_resolution_count_only_without_finer_ones(tmp_path, monkeypatch):
     low, fine = design_named("smoke").make()[:3], design_named("space").make()[:2]
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (*low, *fine)])
-    assert read_tables(tmp_path)[0].names == tuple(case.name for case in fine)
+    assert tables_of(read_sources([tmp_path]))[0].names == tuple(case.name for case in fine)
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in low])
-    assert len(read_tables(tmp_path)[0].pairs) == 3
+    assert len(tables_of(read_sources([tmp_path]))[0].pairs) == 3
 
 
 def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
@@ -130,15 +130,15 @@ def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
     pair = replace(other.pair, sphere=sphere.with_(flow=Flow(curve=curve)))
     hard = replace(other, problem=replace(other.problem, pair=pair))
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (plain, hard)])
-    assert read_tables(tmp_path)[0].names == (plain.name,)
+    assert tables_of(read_sources([tmp_path]))[0].names == (plain.name,)
 
 
 def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
     """A case of the validation design never reaches a fit, whatever file it lies in."""
     cases = (*design_named("validation").make()[:2], *design_named("smoke").make()[:3])
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in cases])
-    fitted, _ = read_tables(tmp_path)
-    judged, _ = read_tables(tmp_path, held_out=True)
+    fitted, _ = tables_of(read_sources([tmp_path]))
+    judged, _ = tables_of(read_sources([tmp_path]), held_out=True)
     assert len(fitted.pairs) == 3
     assert len(judged.pairs) == 2
     assert not any(name.startswith("validation") for name in fitted.names)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.fitting.hardening import fit_hardening, hardening_records, judge_hardening
+from dentscope.fitting.table import read_sources
 from dentscope.models import LAWS
 from dentscope.models.hardening import HardeningCorrection, hardening_law
 
@@ -13,15 +14,20 @@ PARTS = sorted([*DATA.glob("*hardening-1.h5"), *DATA.glob("*plateau-1.h5")])
 FITTED, HARDENING = LAWS["fitted"], LAWS["hardening"]
 
 
-def test_no_fit_reads_the_pairs_for_judging():
-    seen, kept = hardening_records(PARTS), hardening_records(PARTS, held_out=True)
+@pytest.fixture(scope="module")
+def sources():
+    return read_sources(PARTS)
+
+
+def test_no_fit_reads_the_pairs_for_judging(sources):
+    seen, kept = hardening_records(sources), hardening_records(sources, held_out=True)
     assert (len(seen), len(kept)) == (96 + 48, 24 + 24)
     assert all(r.case.name.startswith("validation") for r in kept)
     assert not {r.id for r in seen} & {r.id for r in kept}
 
 
-def test_pairs_that_no_fit_read_are_within_what_is_stated():
-    errors, within = judge_hardening(HARDENING, hardening_records(PARTS, held_out=True))
+def test_pairs_that_no_fit_read_are_within_what_is_stated(sources):
+    errors, within = judge_hardening(HARDENING, hardening_records(sources, held_out=True))
     assert errors["force"][0] < 0.015
     assert errors["radius"][0] < 0.01
     for quantity, (one, two) in within.items():
@@ -29,8 +35,8 @@ def test_pairs_that_no_fit_read_are_within_what_is_stated():
         assert two > 0.85, quantity
 
 
-def test_a_few_pairs_are_enough_to_halve_the_error_of_the_equivalence_alone():
-    records = hardening_records(PARTS)
+def test_a_few_pairs_are_enough_to_halve_the_error_of_the_equivalence_alone(sources):
+    records = hardening_records(sources)
     found = fit_hardening(FITTED, records[::3])
     assert found.combinations == 48
     others = records[1::12]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.dynamics.told.beside import beside_fitted
-from dentscope.fitting import read_tables
+from dentscope.fitting import read_sources, tables_of
 from dentscope.fitting.calibrate import misses, within
 from dentscope.fitting.prediction import predict_by
 from dentscope.models import LAWS, Uncertainty, critical_depth
@@ -21,7 +21,7 @@ OURS = pytest.mark.parametrize("name", ["compact", "fitted"])
 def test_unseen_pairs_lie_within_the_stated_deviations(name):
     """72 pairs of validation-2 and challenge, which no fit read: about 68 and 95 % of depths."""
     parts = [DATA / "campaign" / "validation-2-1.h5", DATA / "challenge" / "challenge-1.h5"]
-    table, turns = read_tables(parts, held_out=True)
+    table, turns = tables_of(read_sources(parts), held_out=True)
     law = LAWS[name]
     numbers = law.numbers(table.bodies)
     found = misses(predict_by(numbers, table, turns), numbers, table, turns)
