@@ -155,6 +155,12 @@ def test_oblique_balls(followed: Callable[[str], dict[str, Any]]) -> None:
         assert lost < 0.95 * 0.4 * 2.5e-3 * spin
 
 
+def test_next_trial(followed: Callable[[str], dict[str, Any]]) -> None:
+    names = followed("next-trial")
+    [concealed] = json.loads(Path("game-judge/secret.json").read_text()).values()
+    assert list(names["verdict"].mechanisms) == [concealed["effect"]]
+
+
 @pytest.mark.fe
 def test_indentation_from_tension(followed: Callable[[str], dict[str, Any]]) -> None:
     names = followed("indentation-from-tension")
