@@ -28,9 +28,10 @@ from .rules import RULES
 NODES = RULES.strength_nodes
 """Nodes of the table over ln(depth / R)."""
 
-_SOFTER = (0.1, 0.17, 0.25, 0.35, 0.5, 0.6, 0.7, 0.85)
-_HARDER = (1.2, 1.5, 1.9, 2.4, 3.1, 3.6, 4.2, 5.0, 5.9, 7.0, 8.4, 10.0)
-_LEVELS = np.log(np.array([*_SOFTER, 1.0, *_HARDER]))
+_LEVELS = np.log([
+    0.1, 0.17, 0.25, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0,
+    1.2, 1.5, 1.9, 2.4, 3.1, 3.6, 4.2, 5.0, 5.9, 7.0, 8.4, 10.0,
+])  # fmt: skip
 _FAR = np.log([*np.geomspace(1e-3, 0.085, 18), *np.exp(_LEVELS), *np.geomspace(12.0, 1e3, 20)])
 """Levels of a strength that leaves those: a factor of 10 is more than nearly all ask for."""
 
