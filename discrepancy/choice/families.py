@@ -28,7 +28,7 @@ FAMILIES: dict[str, tuple[str, tuple[str, ...]]] = {
     "arrival": (
         "the striker does not arrive as stated",
         ("impact-speed-loss", "air-drag", "tilt", "wrong-input:speed.scale",
-         "wrong-input:drop_height_m"),
+         "wrong-input:drop_height_m", "wrong-input:angle_deg"),
     ),
 }  # fmt: skip
 """Family to what its members agree on, and the members; a wrong number of a body's size, mass or

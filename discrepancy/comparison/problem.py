@@ -132,7 +132,9 @@ class Problem:
         falls = [c.striker for c in self.conditions if c.around.from_height]
         fallen = max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0)
         observed = tuple(dict.fromkeys(self.cells.observable))
-        return tuple(wrong_numbers(known, strikers, observed, fallen=fallen))
+        oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
+        found = wrong_numbers(known, strikers, observed, fallen=fallen, oblique=oblique)
+        return tuple(found)
 
     @property
     def scales(self) -> tuple[tuple[str, int], ...]:

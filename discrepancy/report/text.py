@@ -104,9 +104,8 @@ def _wrong(w: WrongInput) -> str:
             f"in place of {quantity(w.stated or 0.0, n.unit)}"
         )
     else:
-        unit = n.parameters[0].unit
-        found += f" By {'' if n.added else 'a factor of '}{quantity(w.off, unit)} "
-        found += f"({interval(w.low, w.high, unit)})"
+        unit, (before, after) = n.parameters[0].unit, n.by
+        found += f" By {before}{quantity(w.off, unit)} ({interval(w.low, w.high, unit)}){after}"
     slip = n.slip(w.low, w.high)
     return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
 

@@ -44,6 +44,7 @@ _SETTLED = {
     "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
     "friction": "a slope or a pull with a spring balance",
     "height": "a ruler from the flat to the ball's lowest point",
+    "angle": "a square on the flat: 90 degrees is upright",
     "reading": "a gauge block, or the same mark by another instrument",
 }  # fmt: skip
 _SLIPS = (
@@ -85,6 +86,11 @@ class WrongNumber(Mechanism):
     def added(self) -> bool:
         """Whether it is off by what is added to it, not by a factor."""
         return self.parameters[0].unit != "-"
+
+    @property
+    def by(self) -> tuple[str, str]:
+        """Words before and after how far it is off."""
+        return ("" if self.added else "a factor of "), ""
 
     @property
     def settled_by(self) -> str:
@@ -132,6 +138,35 @@ class WrongHeight(WrongNumber):
         return scene.with_(approach=replace(a, speed=math.sqrt(max(fallen, 0.04 * a.speed**2))))
 
 
+class WrongAngle(WrongNumber):
+    """All angles are the complements of what is stated, or nearly: read from the other line."""
+
+    by = "", " of the way to 90 degrees less each"
+
+    def __init__(self) -> None:
+        super().__init__("angle_deg", "angle", "all angles are measured from the normal")
+        self.equations = "angle_deg + t (90 - 2 angle_deg)"
+        told = "the complement; how a line is found by eye"
+        self.parameters = (
+            Parameter("angle_deg_turned", "-", 0.9, 1.0, "linear", 0.0, told, nodes=3),
+        )
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Return the scene at the other angle, of the same normal speed."""
+        a, share = scene.approach, values["angle_deg_turned"]
+        if scene.press is not None:
+            return scene
+        leans = a.angle < math.pi / 2.0 - 1e-9
+        if not leans and a.tangential == 0.0:
+            return scene
+        stated = a.angle if leans else math.atan2(a.speed, abs(a.tangential))
+        angle = stated + share * (math.pi / 2.0 - 2.0 * stated)
+        if leans:
+            return scene.with_(approach=replace(a, angle=angle))
+        along = math.copysign(a.speed / math.tan(angle), a.tangential)
+        return scene.with_(approach=replace(a, tangential=along))
+
+
 def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:
     """Whether an explanation is a number of the sheet."""
     return isinstance(mechanism, WrongNumber)
@@ -147,13 +182,19 @@ def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict
 
 
 def wrong_numbers(
-    known: Collection[str], strikers: Sequence[str], observed: Sequence[str], *, fallen: float
+    known: Collection[str],
+    strikers: Sequence[str],
+    observed: Sequence[str],
+    *,
+    fallen: float,
+    oblique: bool,
 ) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
 
     - `known`: keys of numbers that readings hang on and that are not taken as unknown already.
     - `strikers`, `observed`: what strikes, and what was read.
     - `fallen`: largest radius of what falls from a stated height [m]; 0 where none does.
+    - `oblique`: whether a rod leans, or a ball's path.
     """
     tables = {"target": ("the flat", _OF_TARGET)}
     tables |= {f"strikers.{s}": (f"striker {s}", _OF_STRIKER) for s in strikers}
@@ -167,6 +208,8 @@ def wrong_numbers(
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
         yield WrongHeight(4.0 * fallen)
+    if oblique:
+        yield WrongAngle()
     for name in observed if len(observed) > 1 else ():
         title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
         yield WrongReading(name, "reading", title)

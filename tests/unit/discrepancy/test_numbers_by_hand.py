@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from dentscope.discrepancy.choice.odds import PRIORS
 from dentscope.discrepancy.choice.outside import odd_repeats, outside_of
 from dentscope.discrepancy.comparison.cells import Scatter, cells_of
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.curves.readings import Readings, _corrected
 from dentscope.discrepancy.estimates import law_notes
 from dentscope.discrepancy.inference.derivatives import FORMS, derivatives, form_error
@@ -20,6 +22,8 @@ from dentscope.discrepancy.unknowns.drift import drift_of
 from dentscope.discrepancy.unknowns.followed import Entries, followed_of
 from dentscope.discrepancy.unknowns.lawerror import FREE, SIZES
 from dentscope.dynamics.mechanisms.base import Parameter
+from dentscope.recordings import read
+from dentscope.recordings.shipped import set_folder
 
 
 def test_priors_add_to_one_and_a_wrong_number_is_as_probable_as_physics() -> None:
@@ -176,3 +180,17 @@ def test_a_part_of_the_misfit_below_nothing_is_told_as_nothing() -> None:
     _, told = law_notes(problem, misfit)
     assert "of it errors of the data sheet would explain 0 %, a real metal 98 %" in told
     assert "the misfit is chi2 = 307 (8 numbers)" in told
+
+
+@pytest.mark.parametrize("name", ["kharaz-2001-oblique", "thesis-chapter-5"])
+def test_angles_from_the_normal_are_the_complements_at_one_normal_speed(name) -> None:
+    problem = problem_of(read(set_folder(Path(name))), law="fitted")
+    [turned] = (m for m in problem.wrong_numbers if m.key == "angle_deg")
+    for scene, c in zip(problem.scenes(np.zeros(problem.n_z)), problem.conditions, strict=True):
+        there = turned.attach(scene, {"angle_deg_turned": 1.0}, c.around).approach
+        path = math.atan2(there.speed, abs(there.tangential))
+        angle = there.angle if name.startswith("thesis") else path
+        assert angle == pytest.approx(math.pi / 2.0 - c.incidence)
+        assert there.speed == scene.approach.speed
+    upright = problem_of(read(set_folder(Path("leeb-steel-300hv"))), law="fitted")
+    assert not [m for m in upright.wrong_numbers if m.key == "angle_deg"]
