@@ -67,7 +67,7 @@ class WrongInput(NamedTuple):
         return {
             "key": n.key, "probability": self.probability, "stated": self.stated,
             "value": value, "low": low, "high": high, "level": 0.9, "unit": n.unit,
-            "offset" if n.added else "factor": self.off, "settled_by": n.settled_by,
+            n.measure: self.off, "settled_by": n.settled_by,
         }  # fmt: skip
 
 

@@ -104,8 +104,9 @@ def _wrong(w: WrongInput) -> str:
             f"in place of {quantity(w.stated or 0.0, n.unit)}"
         )
     else:
-        unit, (before, after) = n.parameters[0].unit, n.by
-        found += f" By {before}{quantity(w.off, unit)} ({interval(w.low, w.high, unit)}){after}"
+        unit = n.parameters[0].unit
+        off = f"{quantity(w.off, unit)} ({interval(w.low, w.high, unit)})"
+        found += f" {n.told.format(off)}"
     slip = n.slip(w.low, w.high)
     return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
 

@@ -72,6 +72,9 @@ class WrongNumber(Mechanism):
 
     static = True
     form = 0.0
+    measure = "factor"
+    """Of how far it is off, as in verdict.json; `told` is it in words, around the number."""
+    told = "By a factor of {}"
 
     def __init__(self, key: str, kind: str, title: str, unit: str = "-") -> None:
         self.key, self.kind, self.title, self.unit = key, kind, title, unit
@@ -81,16 +84,6 @@ class WrongNumber(Mechanism):
         self.parameters = (
             Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE, nodes=nodes),
         )  # fmt: skip
-
-    @property
-    def added(self) -> bool:
-        """Whether it is off by what is added to it, not by a factor."""
-        return self.parameters[0].unit != "-"
-
-    @property
-    def by(self) -> tuple[str, str]:
-        """Words before and after how far it is off."""
-        return ("" if self.added else "a factor of "), ""
 
     @property
     def settled_by(self) -> str:
@@ -121,6 +114,8 @@ class WrongReading(WrongNumber):
 class WrongHeight(WrongNumber):
     """All heights of fall off by one length: read to the ball's centre or top, or from a table."""
 
+    measure, told = "offset", "By {}"
+
     def __init__(self, most: float) -> None:
         super().__init__("drop_height_m", "height", "all heights of fall are off by one length")
         self.equations = "drop_height_m plus the offset"
@@ -141,7 +136,7 @@ class WrongHeight(WrongNumber):
 class WrongAngle(WrongNumber):
     """All angles are the complements of what is stated, or nearly: read from the other line."""
 
-    by = "", " of the way to 90 degrees less each"
+    measure, told = "complement", "By {} of the way to 90 degrees less each"
 
     def __init__(self) -> None:
         super().__init__("angle_deg", "angle", "all angles are measured from the normal")
