@@ -16,11 +16,12 @@ from dentscope import recordings
 from dentscope.cli import run
 from dentscope.core import InputErrors
 from dentscope.dynamics import mechanisms
-from dentscope.studies.challenge import answers, archive, ask, draw, own
+from dentscope.studies.challenge import answers, archive, ask, draw, loop, own
 from dentscope.studies.challenge.score import marks, scores
 from dentscope.studies.proof.generators.effects import EFFECTS, OUTSIDE
 from dentscope.studies.proof.generators.folder import write_set
 from dentscope.studies.proof.seal import digest_of
+from dentscope.studies.third_world.sheet import write
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "challenge.md").read_text(encoding="utf-8")
@@ -297,3 +298,23 @@ def test_what_cannot_be_asked_is_refused_and_not_bought(game, text, told) -> Non
     with pytest.raises(InputErrors, match=told):
         asked(game, "asked-001", text.format(recordings.read(place).trials.striker[0]))
     assert (place / "trials.csv").read_bytes() == before
+
+
+def test_a_wrong_strength_is_put_right_by_measuring_it_again(tmp_path) -> None:
+    found = loop.entries()
+    kinds = {"rate": 40, "strength": 20, "pair": 20, "wrong": 20, "nothing": 20}
+    assert Counter(e.kind for e in found) == kinds
+    entry = next(e for e in found if e.wrong == ("Sy_Pa", 0.6))
+    truth = loop.drawn(1, entry)
+    write(truth, tmp_path, name=entry.name)
+    text = (tmp_path / "set.toml").read_text()
+    wrong = loop.restated(text, "target.Sy_Pa", lambda x, std: (0.6 * x, 0.6 * std))
+    (tmp_path / "set.toml").write_text(wrong)
+    assert loop.right(entry, truth) == "wrong-input:target.Sy_Pa"
+    stated = recordings.read(tmp_path).setup.target.Sy_Pa.value
+    assert stated == pytest.approx(0.6 * truth.rig.flat.Sy, rel=1e-4)
+    again = loop.measured_again(wrong, truth, "target.Sy_Pa", np.random.default_rng(0))
+    (tmp_path / "set.toml").write_text(again)
+    strength = recordings.read(tmp_path).setup.target.Sy_Pa
+    assert abs(strength.value - truth.rig.flat.Sy) < 2.5 * strength.std
+    assert strength.value > 1.2 * stated
