@@ -36,9 +36,9 @@ class SizeEffect(FlowMechanism):
     equations = "S = S_y sqrt(1 + R*/R)"
     parameters = (
         Parameter(
-            "size_length_m", "m", 1e-6, 1e-3, "log", 0.0,
+            "size_length_m", "m", 1e-6, 3e-4, "log", 0.0,
             "Swadener, George and Pharr, J. Mech. Phys. Solids 50 (2002) 681: some tens of um for "
-            "annealed iridium, less for stronger metals; up to thirty times that",
+            "annealed iridium, less for stronger metals; up to ten times that",
         ),
     )  # fmt: skip
 
