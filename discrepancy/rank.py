@@ -108,7 +108,7 @@ def rank(
         reason = _idle(mechanism, simulator.problem) or mechanism.ruled_out(situations)
         if not reason:
             found = screen(simulator, stated, mechanism)
-            size = visible(found, base)
+            size = float(sizes(found, base).max())
             if size >= RULES.invisible:
                 screened.append(replace(found, log_bayes=_gain(stated, base, found.effect)))
                 continue
@@ -198,10 +198,10 @@ def _gain(stated: Fit, base: Fit, effect: Array) -> float:
     return gain + stated.log_evidence - base.log_evidence
 
 
-def visible(found: Screened, base: Fit) -> float:
-    """Largest effect in units of the measurements' standard errors, over all cells."""
+def sizes(found: Screened, base: Fit) -> Array:
+    """Return effects over all cells in the measurements' standard errors, (k,) over the grid."""
     noise = np.sqrt(np.diag(base.linear.noise))
-    return float(np.max(np.linalg.norm(found.effect / noise, axis=1)))
+    return np.asarray(np.linalg.norm(found.effect / noise, axis=1))
 
 
 def _cleared(

@@ -8,7 +8,7 @@ instrument. A mechanism replaces one seam by `Scene.with_`; nothing is ever writ
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from operator import attrgetter
 from typing import Any, Protocol
 
@@ -170,6 +170,20 @@ class Approach:
         _check(self.speed, "impact_speed_m_s")
         if not 0.0 <= self.angle <= math.pi / 2.0 + 1e-12:
             raise InputError(f"{math.degrees(self.angle):g}", key="angle_deg", allowed="0 to 90")
+
+    @property
+    def incidence(self) -> float:
+        """Angle to the flat [rad]: a rod's lean, and where nothing leans that of the path."""
+        if self.angle < math.pi / 2.0 - 1e-9:
+            return self.angle
+        return math.atan2(self.speed, abs(self.tangential))
+
+    def inclined(self, incidence: float) -> Approach:
+        """Return the approach at another incidence [rad], of the same normal speed."""
+        if self.angle < math.pi / 2.0 - 1e-9 or self.tangential == 0.0:
+            return replace(self, angle=incidence)
+        along = math.copysign(self.speed / math.tan(incidence), self.tangential)
+        return replace(self, tangential=along)
 
     @classmethod
     def dropped(cls, height: float, **others: float) -> Approach:

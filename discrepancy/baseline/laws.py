@@ -39,7 +39,7 @@ def without_curves(target: TargetTable) -> ContactLaw:
     return _shared("fitted" if target.yields else "hertz")
 
 
-def as_known(recordings: RecordingSet) -> tuple[RecordingSet, tuple[str, ...]]:
+def measured_where_unknown(recordings: RecordingSet) -> tuple[RecordingSet, tuple[str, ...]]:
     """Return a set with the baseline that its sheet allows, and what a reader must know of it.
 
     Where the sheet says nothing of how stiff or strong a body is, and only motion was read, no law

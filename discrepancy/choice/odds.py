@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...dynamics.mechanisms.base import Mechanism
-from ..rank import Ranking, Screened
+from ..rank import Ranking, Screened, sizes
 from ..rules import RULES
 from ..unknowns.wrong_number import WRONG, is_wrong
 from .outside import odd_repeats, outside_of
@@ -171,9 +171,7 @@ def _acts(ranking: Ranking, screened: Screened) -> bool:
     around = [c.around for c in ranking.problem.conditions if c.press is None]
     if not (around and all(map(screened.mechanism.certain, around))):
         return False
-    noise = np.sqrt(np.diag(ranking.base.linear.noise))
-    size = np.linalg.norm(screened.effect / noise, axis=1)
-    return bool(size.min() > RULES.shows)
+    return bool(sizes(screened, ranking.base).min() > RULES.shows)
 
 
 def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:

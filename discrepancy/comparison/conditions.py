@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...core.arrays import Indices
-from ...dynamics import Press
+from ...dynamics import Approach, Press
 from ...dynamics.mechanisms.around import surroundings_of, weaker_table
 from ...dynamics.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
@@ -63,16 +62,16 @@ class Condition:
     @property
     def incidence(self) -> float:
         """Angle to the flat [rad]: a rod's lean, and where nothing leans that of the path."""
-        if self.angle < math.pi / 2.0 - 1e-9:
-            return self.angle
-        return math.atan2(self.speed, abs(self.tangential))
+        return self._approach.incidence
 
     def inclined(self, incidence: float) -> Condition:
         """Return the impact at another incidence [rad], of the same normal speed."""
-        if self.angle < math.pi / 2.0 - 1e-9 or self.tangential == 0.0:
-            return replace(self, angle=incidence)
-        along = math.copysign(self.speed / math.tan(incidence), self.tangential)
-        return replace(self, tangential=along)
+        there = self._approach.inclined(incidence)
+        return replace(self, angle=there.angle, tangential=there.tangential)
+
+    @property
+    def _approach(self) -> Approach:
+        return Approach(self.speed, self.angle, self.tangential, self.spin)
 
 
 def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:

@@ -23,7 +23,7 @@ from ...dynamics.mechanisms.base import Constants, Mechanism, Surroundings
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ...recordings.bench import Bench
-from ..baseline.laws import LawChoice, as_known, laws_of, without_curves
+from ..baseline.laws import LawChoice, laws_of, measured_where_unknown, without_curves
 from ..curves import readings_of
 from ..rules import RULES
 from ..unknowns.drift import Drift
@@ -256,7 +256,7 @@ def problem_of(
     Raises `InputError`: nothing to compare, or what is assumed has no published numbers or cannot
     act here.
     """
-    recordings, unknown = as_known(recordings)
+    recordings, unknown = measured_where_unknown(recordings)
     setup, approach = recordings.setup, recordings.approach
     conditions = conditions_of(recordings)
     nuisances = nuisances_of(recordings, conditions)
@@ -288,7 +288,10 @@ def problem_of(
         )  # fmt: skip
     later = sum(c.after >= 0 for c in conditions)
     blows = [f"{later} conditions are later blows on one place: they meet its crater"] * bool(later)
-    assumed = [*_acting(problem), *(n.note for n in nuisances if n.note)]
+    # the stiffness of what is taken as measured moves nothing that was read
+    idle = (".E_Pa",) if unknown else ()
+    noted = (n.note for n in nuisances if n.note and not n.name.endswith(idle))
+    assumed = [*_acting(problem), *noted]
     notes = (
         *recordings.notes, *unknown, *told, *blows, *assumed, *unread, *again.values(), *seen.notes,
     )  # fmt: skip

@@ -148,18 +148,11 @@ class WrongAngle(WrongNumber):
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Return the scene at the other angle, of the same normal speed."""
-        a, share = scene.approach, values["angle_deg_turned"]
-        if scene.press is not None:
+        stated = scene.approach.incidence
+        if scene.press is not None or stated > math.pi / 2.0 - 1e-9:
             return scene
-        leans = a.angle < math.pi / 2.0 - 1e-9
-        if not leans and a.tangential == 0.0:
-            return scene
-        stated = a.angle if leans else math.atan2(a.speed, abs(a.tangential))
-        angle = stated + share * (math.pi / 2.0 - 2.0 * stated)
-        if leans:
-            return scene.with_(approach=replace(a, angle=angle))
-        along = math.copysign(a.speed / math.tan(angle), a.tangential)
-        return scene.with_(approach=replace(a, tangential=along))
+        angle = stated + values["angle_deg_turned"] * (math.pi / 2.0 - 2.0 * stated)
+        return scene.with_(approach=scene.approach.inclined(angle))
 
 
 def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:

@@ -39,7 +39,8 @@ SECRET = "secret.json"
 COLUMNS = ("striker", "impact_speed_m_s", "angle_deg", "temperature_K", "load_N")
 """Of what is asked."""
 
-_FIRST = 24  # trials that a set begins with: two hours of five minutes
+FIRST = 24
+"""Trials that a set begins with: two hours of five minutes."""
 
 
 def deal(folder: Path, judge: Path, count: int, *, seed: int | None = None) -> list[str]:
@@ -85,7 +86,7 @@ def _drawn(one: Mapping[str, str]) -> tuple[Truth, bool]:
     rng = np.random.default_rng(int(one["seed"], 16))
     whole = draw(rng, one["kind"], one["effect"], tries=1)
     seen = all(SEEN[0] <= x <= SEEN[1] for x in whole.sizes)
-    return replace(whole, rig=begun(rng, whole.rig, most=_FIRST)), seen
+    return replace(whole, rig=begun(rng, whole.rig, most=FIRST)), seen
 
 
 def _rig(truth: Truth) -> str:

@@ -32,12 +32,12 @@ from ..third_world.asked import Asked, answer, begun, possible
 from ..third_world.benches import TOLERANCE
 from ..third_world.draw import NULLS, PAIRS, Truth, draw
 from ..third_world.sheet import write
+from .ask import FIRST
 
 WAYS = ("proposal", "more of the same", "random")
 """How a session is chosen."""
 
 _SESSIONS = 2
-_FIRST = 24  # trials of the first session: two hours of five minutes
 _STRENGTHS = ("work-hardening", "hardened-layer", "size-effect", "thermal-softening")
 _WRONG = (("Sy_Pa", 0.6), ("Sy_Pa", 0.75), ("Sy_Pa", 1.35), ("Sy_Pa", 1.6), ("mass_kg", 1.15),
           ("tip_radius_m", 2.0))  # fmt: skip
@@ -75,7 +75,7 @@ def drawn(seed: int, entry: Entry) -> Truth:
     rng = np.random.default_rng([seed, entry.number])
     known = {"nothing": "null", "wrong": "null", "pair": "pair"}
     truth = draw(rng, known.get(entry.kind, "single"), entry.effect)
-    return replace(truth, rig=begun(rng, truth.rig, most=_FIRST))
+    return replace(truth, rig=begun(rng, truth.rig, most=FIRST))
 
 
 def key_of(truth: Truth, what: str) -> str:
@@ -109,26 +109,21 @@ def proposed(verdict: Verdict, truth: Truth) -> list[Asked]:
     spans = possible(truth.rig)
     warm = float(np.median(truth.rig.temperature))
     found: list[Asked] = []
+
+    def within(what: str, value: str | float) -> float:
+        return float(np.clip(float(value), *spans[what]))
+
     for step in verdict.session.steps:
         t = step.trial
-        if "key" in t or "striker" not in t:
-            continue
-        load = float(t.get("load_N", 0.0))
-        if load and "load" in spans:
-            one = Asked(str(t["striker"]), 0.0, 90.0, warm, float(np.clip(load, *spans["load"])))
-        elif not load:
-            speed = float(np.clip(float(t["speed_m_s"]), *spans["speed"]))
-            angle = float(np.clip(float(t["angle_deg"]), *spans["angle"]))
+        if step.kind == "press":
+            one = Asked(str(t["striker"]), 0.0, 90.0, warm, within("load", t["load_N"]))
+        elif step.kind == "trial":
+            speed, angle = within("speed", t["speed_m_s"]), within("angle", t["angle_deg"])
             one = Asked(str(t["striker"]), speed, angle, warm)
         else:
             continue
         found += [one] * round(float(t["repeats"]))
     return found
-
-
-def settled(verdict: Verdict) -> list[str]:
-    """Keys of the numbers of the sheet that it proposes to measure again."""
-    return [str(s.trial["key"]) for s in verdict.session.steps if "key" in s.trial]
 
 
 def other(way: str, truth: Truth, rng: np.random.Generator) -> list[Asked]:
@@ -155,16 +150,12 @@ def measured_again(text: str, truth: Truth, key: str, rng: np.random.Generator) 
     kind, tolerance = {"Sy_Pa": ("hardness", "strength"), "mass_kg": ("weigh", "mass"),
                        "tip_radius_m": ("calliper", "tip")}[word]  # fmt: skip
     body = {s.name: s for s in truth.rig.strikers}.get(table.removeprefix("strikers."))
-    if body is None:
-        value = truth.rig.flat.Sy
-    else:
-        value = {"Sy_Pa": body.metal.Sy, "mass_kg": body.mass, "tip_radius_m": body.tip_radius}[
-            word
-        ]
-    exact = body is not None and word == "Sy_Pa"
-    value *= 1.0 if exact else 1.0 + TOLERANCE[tolerance] * truth.z.get(tolerance, 0.0)
+    metal = truth.rig.flat if body is None else body.metal
+    value = getattr(body, {"mass_kg": "mass", "tip_radius_m": "tip_radius"}.get(word, ""), metal.Sy)
+    # of a striker's strength the sheet says what is
+    off = 0.0 if metal is not truth.rig.flat and word == "Sy_Pa" else truth.z.get(tolerance, 0.0)
     error = dict(RULES.settled)[kind]
-    value *= 1.0 + error * float(rng.normal())
+    value *= (1.0 + TOLERANCE[tolerance] * off) * (1.0 + error * float(rng.normal()))
 
     def both(said: float, std: float) -> tuple[float, float]:
         if abs(said - value) > 3.0 * math.hypot(std, error * value):
@@ -196,13 +187,14 @@ def followed(folder: Path, entry: Entry, seed: int) -> dict[str, Any]:
         shutil.copytree(first, place)
         said[way] = [_said(verdict, label, 0.0)]
         for _ in range(_SESSIONS):
-            if way == "proposal" and not verdict.session.goes_on:
+            if way != WAYS[0]:
+                asked, minutes = other(way, truth, rng), RULES.session
+            elif not verdict.session.goes_on:
                 break
-            asked = proposed(verdict, truth) if way == "proposal" else other(way, truth, rng)
-            minutes = verdict.session.minutes if way == "proposal" else RULES.session
-            if way == "proposal":
-                text = (place / "set.toml").read_text()
-                for key in settled(verdict):
+            else:
+                asked, minutes = proposed(verdict, truth), verdict.session.minutes
+                text = (place / "set.toml").read_text(encoding="utf-8")
+                for key in (str(s.trial["key"]) for s in verdict.session.steps if "key" in s.trial):
                     text = measured_again(text, truth, key, rng)
                     # a sheet that was put right is what it should be
                     label = "baseline" if label == f"wrong-input:{key}" else label
