@@ -92,7 +92,9 @@ def _drawn(story: Story) -> Figure:
         axis.grid(alpha=0.3)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", fontsize=8)
-    figure.suptitle(story.finding, fontsize=10, wrap=True)
+    # the legend's lines are longer than one panel is wide; of the finding its first sentence
+    figure.set_figwidth(max(figure.get_figwidth(), 7.5))
+    figure.suptitle(f"{story.finding.partition('. ')[0].rstrip('.')}.", fontsize=10, wrap=True)
     return figure
 
 
