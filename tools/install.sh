@@ -56,15 +56,6 @@ awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"
 # the build tool is pinned too: nothing outside the lock is fetched
 .venv/bin/uv pip install -q --python .venv/bin/python --no-deps --no-build-isolation -e .
-# mypy and editors find the package by its name through these links, whatever the clone is called;
-# a link to the root itself would hold itself
-rm -rf .typing && mkdir -p .typing/dentscope
-for part in __init__.py __main__.py py.typed */__init__.py; do
-  ln -s "../../${part%/__init__.py}" ".typing/dentscope/${part%/__init__.py}"
-done
-# a type checker of a user's own file looks for them among the packages
-ln -s ../../__init__.py .typing/dentscope/__init__.pyi
-ln -sfn "$PWD/.typing/dentscope" "$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/dentscope-stubs"
 
 if ! .venv/bin/python -c 'import gmsh' 2>/dev/null; then
   apt_install "gmsh" "${system_packages[@]}" || exit 2
