@@ -58,14 +58,14 @@ def _odds(table: TextTable, sets: Sequence[str], problems: Problems) -> dict[str
         if name not in known:
             unknown.setdefault(name, row)
             continue
-        label = _label(told)
+        whole = label(told)
         odds = found.setdefault(name, {})
-        if not label:
+        if not whole:
             near = get_close_matches(told, EXPLANATIONS, n=1)
             allowed = f"did you mean {near[0]}?" if near else ", ".join(EXPLANATIONS) + ", or a+b"
             problems.add(f"unknown name {shown(told)}", row=row, column="name", allowed=allowed)
-        elif label in odds:
-            problems.add(f"{label} twice for {name}", row=row, column="name", allowed="once")
+        elif whole in odds:
+            problems.add(f"{whole} twice for {name}", row=row, column="name", allowed="once")
         elif math.isnan(p) and table.cells["probability"][i]:
             continue  # no number: told already
         elif not 0.0 <= p <= 1.0 + _ROUNDING:
@@ -74,7 +74,7 @@ def _odds(table: TextTable, sets: Sequence[str], problems: Problems) -> dict[str
                 allowed="a number from 0 to 1",
             )  # fmt: skip
         else:
-            odds[label] = p
+            odds[whole] = p
     if unknown:
         name, row = next(iter(unknown.items()))
         problems.add(
@@ -84,7 +84,7 @@ def _odds(table: TextTable, sets: Sequence[str], problems: Problems) -> dict[str
     return found
 
 
-def _label(told: str) -> str:
+def label(told: str) -> str:
     """Return a name as it is compared, a pair's parts in order; empty for what is none."""
     parts = sorted(part.strip() for part in told.split("+"))
     if len(parts) == 1:

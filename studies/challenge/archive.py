@@ -106,13 +106,17 @@ def truths_of(
         return {}
     if not isinstance(records, dict) or any(name not in records for name in sets):
         raise InputError("not the truths of these sets", source=str(source), allowed=_TRUTHS)
+    theirs = (folder / SEALS).exists()
     try:
-        known = seals()
+        known = Ledger(folder / SEALS).of("truth") if theirs else seals()
     except SealBroken as broken:
-        raise InputError(str(broken), source=str(DATA), allowed="unbroken seals") from broken
+        place = folder if theirs else DATA
+        raise InputError(str(broken), source=str(place), allowed="unbroken seals") from broken
     for name in sets:
         if opened is not None and name not in known:
             raise InputError("was never sealed", source=str(folder), key=name, allowed="its truths")
+        if theirs and digest_of(folder / "sets" / name) != known[name]["recordings"]:
+            raise InputError("not the recordings that were sealed", source=str(folder), key=name)
         if name in known and digest_of_record(records[name]) != known[name]["truth"]:
             raise InputError(
                 "not the truth that was sealed", source=str(source), key=name, allowed=_TRUTHS

@@ -71,6 +71,25 @@ def ask(
 
 
 @app.command()
+def seal(
+    folder: Annotated[Path, typer.Argument(help="Of your sets: FOLDER/sets/NAME.")],
+    acts: Annotated[Path, typer.Argument(help="Table: set, name of what acts.")],
+    truths: Annotated[
+        Path | None, typer.Option(help="New file for the truths; default: FOLDER-truths.json.")
+    ] = None,
+) -> None:
+    """Fix what you did to sets of your own before anybody answers them."""
+    from ..challenge.archive import SEALS
+    from ..challenge.sealing import seal as fix
+
+    kept = truths or folder.with_name(f"{folder.name}-truths.json")
+    names = fix(folder, acts, kept)
+    digest = hashlib.sha256((folder / SEALS).read_bytes()).hexdigest()
+    typer.echo(f"{folder / SEALS}: {len(names)} sets, SHA-256 {digest}: publish it with them")
+    typer.echo(f"{kept}: the truths: keep them until all answers are in")
+
+
+@app.command()
 def score(
     folder: Annotated[Path, typer.Argument(help="FOLDER/open or FOLDER/sealed.")],
     answers: Annotated[Path, typer.Argument(help="Table: set, name, probability.")],

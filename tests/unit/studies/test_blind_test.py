@@ -1,0 +1,95 @@
+"""A blind test by others: sealed, answered by the diagnosis as the page says, opened, scored."""
+
+from __future__ import annotations
+
+import json
+import re
+import runpy
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.studies.challenge import sealing
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGE = (ROOT / "docs" / "blind-test.md").read_text(encoding="utf-8")
+SHIPPED = ROOT / "data/recordings/leeb-steel-300hv"
+SETS = ("series-01", "series-02")
+SEAL = ["challenge", "seal", "blind", "acts.csv"]
+SCORE = ["challenge", "score", "blind", "answers.csv"]
+OPEN = [*SCORE, "--truths", "blind-truths.json"]
+
+
+@pytest.fixture
+def laboratory(tmp_path, monkeypatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in SETS:
+        (tmp_path / "blind/sets" / name).mkdir(parents=True)
+        for file in ("set.toml", "trials.csv"):
+            shutil.copy(SHIPPED / file, tmp_path / "blind/sets" / name)
+    (tmp_path / "acts.csv").write_text("set,name\nseries-02,tilt+adhesion\nseries-01,baseline\n")
+    return tmp_path
+
+
+def test_sealed_answered_and_opened_as_the_page_says(laboratory, monkeypatch, capsys) -> None:
+    assert run(SEAL) == 0
+    assert "2 sets, SHA-256" in capsys.readouterr().out
+    assert "tilt" not in (laboratory / "blind/seals.jsonl").read_text()
+    monkeypatch.setattr(subprocess, "run", lambda command, check: run(command[1:]))
+    code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[0]
+    (laboratory / "method.py").write_text(code)
+    runpy.run_path(str(laboratory / "method.py"))
+    capsys.readouterr()
+    assert run(SCORE) == 0
+    assert "keep the file" in capsys.readouterr().out
+    assert run(OPEN) == 0
+    (front,) = (x for x in capsys.readouterr().out.splitlines() if "truth in front" in x)
+    assert float(front.split()[3]) in (0.0, 0.5)  # two equal sets: one at most is right
+
+
+def test_what_changed_after_the_seal_is_not_scored(laboratory, capsys) -> None:
+    run(SEAL)
+    rows = "".join(f"{name},baseline,1\n" for name in SETS)
+    (laboratory / "answers.csv").write_text("set,name,probability\n" + rows)
+    truths = laboratory / "blind-truths.json"
+    kept = truths.read_text()
+    records = json.loads(kept)
+    records["series-02"]["mechanisms"] = ["tilt"]
+    truths.write_text(json.dumps(records))
+    capsys.readouterr()
+    assert run(OPEN) == 2
+    assert "series-02: not the truth that was sealed" in capsys.readouterr().err
+    truths.write_text(kept)
+    assert run(OPEN) == 0
+    table = laboratory / "blind/sets/series-01/trials.csv"
+    table.write_text(table.read_text() + "\n")
+    assert run(OPEN) == 2
+    assert "series-01: not the recordings that were sealed" in capsys.readouterr().err
+    assert run(SEAL) == 2
+    assert "seal once" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("series-01,baseline\n", "no row of series-02"),
+        ("series-01,baseline\nseries-03,tilt\n", "row 3, column set: 'series-03' is not there"),
+        ("series-01,baseline\nseries-01,tilt\n", "row 3, column set: 'series-01' twice"),
+        ("series-01,rubber\nseries-02,tilt\n", "row 2, column name: unknown name 'rubber'"),
+        ("series-01,another pair\nseries-02,tilt\n", "unknown name 'another pair'"),
+    ],
+)
+def test_a_mistake_in_the_acts_is_one_line(laboratory, capsys, rows, told) -> None:
+    (laboratory / "acts.csv").write_text("set,name\n" + rows)
+    assert run(SEAL) == 2
+    assert told in capsys.readouterr().err
+    assert not (laboratory / "blind/seals.jsonl").exists()
+    assert not (laboratory / "blind-truths.json").exists()
+
+
+def test_every_act_of_the_page_has_a_name_that_can_be_answered() -> None:
+    names = re.findall(r"^\| [^|]+ \| `([^`]+)` \|$", PAGE, flags=re.MULTILINE)
+    assert len(names) == 10
+    assert all(name == "outside-library" or sealing.label(name) for name in names)
