@@ -1,7 +1,5 @@
 """The compiled integrator against the library's, and what every scene must keep."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ changes nothing that it was given; observables move as declared; numbers have a 
 source; what arithmetic rules out comes with a reason.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 import re

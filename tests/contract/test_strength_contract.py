@@ -5,8 +5,6 @@ depth or rate. The impact must then be that of two bodies of that strength: in f
 depths, diameter of the dent, time of contact.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The example files of impact and inverse run and show what they say."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 
@@ -11,7 +9,7 @@ from dentscope.cli import run
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
-def table(path: Path) -> csv.DictReader[str]:
+def table(path: Path) -> csv.DictReader:
     return csv.DictReader(path.read_text(encoding="utf-8").splitlines())
 
 

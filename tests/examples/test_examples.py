@@ -1,7 +1,5 @@
 """Every example runs, as a script and as a notebook, and shows what it says."""
 
-from __future__ import annotations
-
 import json
 import runpy
 from pathlib import Path

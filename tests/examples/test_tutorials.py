@@ -1,7 +1,5 @@
 """Every tutorial is run as it stands; what it quotes must be what its commands print."""
 
-from __future__ import annotations
-
 import glob
 import json
 import math

@@ -6,8 +6,6 @@ Every third depth and every unloading of all combinations go in, rounded to six 
 the form or the published coefficients changed, and say why in the commit.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import fields

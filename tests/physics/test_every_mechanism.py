@@ -3,8 +3,6 @@
 `DRAWS=2000 pytest tests/physics/test_every_mechanism.py` draws as many blows as are asked for.
 """
 
-from __future__ import annotations
-
 import math
 import os
 

@@ -1,7 +1,5 @@
 """Tangential compliance against Maw, Barber and Fawcett, and against measured spins."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

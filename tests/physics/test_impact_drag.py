@@ -1,7 +1,5 @@
 """Flight with drag: terminal speeds and falls of other people, exact limits, both ways."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Normal impacts by work alone, against exact solutions and against the time steps."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Impacts against closed forms: Hertz, a constant pressure, the rigid body with friction."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What earlier touches left: a tip in a crater, a second touch beside the first, scars."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 All of them, with processor seconds and memory: python tools/benchmarks/bench_sweeps.py.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import Any

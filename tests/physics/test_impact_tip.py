@@ -1,7 +1,5 @@
 """A finite, worn or flattened tip and a friction that is higher at rest, against closed forms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

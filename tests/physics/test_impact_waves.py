@@ -1,7 +1,5 @@
 """Rod modes against exact solutions: Timoshenko's frequency equation, Sears's wave solution."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`dentscope impact`: templates run as they are, sweeps go to files, nothing is cut at 80."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

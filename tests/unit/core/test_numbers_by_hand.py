@@ -1,7 +1,5 @@
 """Tuned numbers of the metals where they act, in cases that are worked out by hand."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The free correction, where one cell is the logarithm of the force itself."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Numbers of traces and profiles, against curves whose numbers are known in closed form."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

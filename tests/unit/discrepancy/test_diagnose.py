@@ -1,7 +1,5 @@
 """The whole way from a folder to a verdict, on small sets of the proof's generators."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

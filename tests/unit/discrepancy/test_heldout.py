@@ -1,7 +1,5 @@
 """Held-out conditions, where what is left out follows from the others by a known formula."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

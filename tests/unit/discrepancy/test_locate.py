@@ -1,7 +1,5 @@
 """Where the baseline misses, on four cells whose contrasts can be added up by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Single mechanisms against their own formulas; what all keep to is in tests/contract."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Ranking, on cells that are linear in everything: shapes go in, their names come out."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

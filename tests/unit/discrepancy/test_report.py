@@ -1,7 +1,5 @@
 """The report draws what its legend says, and its sentences do not contradict each other."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any

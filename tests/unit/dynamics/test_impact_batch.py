@@ -1,7 +1,5 @@
 """Arrays of conditions: the same as one impact after another, and columns as in trials.csv."""
 
-from __future__ import annotations
-
 import csv
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """Chapter 5's inverse: where nothing slides, what is refused, the command."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

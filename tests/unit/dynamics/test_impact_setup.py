@@ -1,7 +1,5 @@
 """Set-up files: what they mean, and one line for each mistake."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A law from its table: the stated error holds for every law, at borders and in an impact."""
 
-from __future__ import annotations
-
 import math
 import warnings
 

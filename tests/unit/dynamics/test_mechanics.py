@@ -1,7 +1,5 @@
 """Questions that other codes and papers are asked, each with its right value by hand."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tuned numbers of the impact stage where they act, in cases that are worked out by hand."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace

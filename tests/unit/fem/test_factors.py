@@ -1,7 +1,5 @@
 """The factors of a tangent against SuperLU's, which share nothing with them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.sparse as sparse

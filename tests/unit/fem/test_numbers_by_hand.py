@@ -1,7 +1,5 @@
 """Tuned numbers of the solver where they act, in cases that are worked out by hand."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tuned numbers of Newton's method, of steps and meshes where they act, worked out by hand."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tuned numbers of the audit where they act, in balances that are worked out by hand."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

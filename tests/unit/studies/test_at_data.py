@@ -1,7 +1,5 @@
 """Draws from the posterior at a set, and both recordings fitted together."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Where truths lie in their posteriors, on a problem small enough to know."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 

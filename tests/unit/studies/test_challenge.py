@@ -1,7 +1,5 @@
 """The challenge as a stranger meets it: the sets, a method of one's own, the scores, the seals."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Simple rules on numbers small enough to follow, and their score against the truths."""
 
-from __future__ import annotations
-
 import json
 import math
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """What is said, on probabilities that are put in by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

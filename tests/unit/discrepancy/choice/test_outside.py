@@ -1,7 +1,5 @@
 """Something outside as an explanation of its own: what it takes up, and what repeats say."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """How an explanation fits beside its own sets, on one or two cells worked out by hand."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

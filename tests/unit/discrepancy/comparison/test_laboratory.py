@@ -1,7 +1,5 @@
 """What a laboratory does to its numbers: one reading twice, settings that are off, many repeats."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tuned numbers of readings and conditions where they act, worked out by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The next experiment: worth by hand, rivals, what a laboratory can do."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Tuned numbers of proposals, nulls and the metal where they act, worked out by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

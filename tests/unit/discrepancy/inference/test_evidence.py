@@ -1,7 +1,5 @@
 """The linear algebra of the evidence, against scipy and closed forms."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

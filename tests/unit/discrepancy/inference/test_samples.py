@@ -1,7 +1,5 @@
 """Draws of a verdict: their moments, what is read again, and the file."""
 
-from __future__ import annotations
-
 import h5py
 import numpy as np
 import pytest

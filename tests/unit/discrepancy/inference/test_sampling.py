@@ -1,7 +1,5 @@
 """Sampled evidence where the algebra is exact: linear cells, an error of three sizes, a window."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From one round of a fit to the next, where responses bend."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

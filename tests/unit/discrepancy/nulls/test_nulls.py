@@ -1,7 +1,5 @@
 """The null generators against exact impacts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The law's error: none where nothing yields, of a metal a share of what is not given back."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

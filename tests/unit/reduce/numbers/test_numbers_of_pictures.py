@@ -1,7 +1,5 @@
 """Tuned numbers of clips, scans, markers and sounds where they act, worked out by hand."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from types import SimpleNamespace

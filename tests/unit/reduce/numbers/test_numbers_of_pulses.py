@@ -1,7 +1,5 @@
 """Tuned numbers of records against time where they act, in cases that are worked out by hand."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The self-similar indentation's parts against what is known exactly."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
