@@ -161,72 +161,19 @@ def test_tangent_is_the_derivative_of_the_residual(distorted, size, radius, rule
     )
     u = smooth_field(distorted, size)
     force, tangent, _ = assembled(distorted, elements, u, state, rule)
+
+    def moved(step):
+        return assembled(distorted, elements, u + step, state, rule)[0]
+
     direction = np.sin(np.arange(u.size) * 1.7) * size
-    remainder = []
-    for h in (4e-3, 2e-3, 1e-3):
-        new, _, _ = assembled(distorted, elements, u + h * direction, state, rule)
-        remainder.append(np.abs(new - force - h * tangent @ direction).max())
+    remainder = [
+        np.abs(moved(h * direction) - force - h * tangent @ direction).max()
+        for h in (4e-3, 2e-3, 1e-3)
+    ]
     slope = np.log2(np.array(remainder[:-1]) / remainder[1:])
     assert slope == pytest.approx(2.0, abs=0.1)
+    # column by column, by central differences
+    columns = [(moved(h) - moved(-h)) / 2e-6 for h in 1e-6 * np.eye(u.size)]
+    assert tangent == pytest.approx(np.array(columns).T, abs=1e-7 * np.abs(tangent).max())
     if np.isinf(radius):
         assert tangent == pytest.approx(tangent.T, abs=1e-10 * np.abs(tangent).max())
-
-
-@pytest.mark.parametrize(("size", "radius"), [(0.002, np.inf), (0.05, RADIUS)])
-def test_tangent_equals_a_plain_scikit_fem_form(distorted, size, radius):
-    elements = elements_of(distorted, radius)
-    state, _ = advance(
-        elements, smooth_field(distorted, 0.3 * size), state=State.virgin(12), rule=EXACT
-    )
-    u = smooth_field(distorted, size)
-    _, tangent, _ = assembled(distorted, elements, u, state, EXACT)
-
-    basis = skfem.CellBasis(
-        distorted, skfem.ElementVector(skfem.ElementQuad1()), quadrature=(POINTS, np.full(4, 0.25))
-    )
-    value = basis.interpolate(u)
-    r = np.asarray(basis.global_coordinates())[0]
-    g = value.grad
-    F = np.ascontiguousarray(
-        np.stack(
-            [1.0 + g[0, 0], g[0, 1], g[1, 0], 1.0 + g[1, 1], 1.0 + np.asarray(value)[0] / r],
-            axis=-1,
-        )
-    )
-    f0, f1, f2, f3, f4 = np.moveaxis(F, -1, 0)
-    volume = 2.0 * math.pi * r * basis.dx
-    total = volume.sum(axis=1)
-    theta = ((f0 * f3 - f1 * f2) * f4 * volume).sum(axis=1) / total
-    p = (K * np.log(theta) / theta)[:, None]
-    A = np.array(
-        [[point_of(state, e, q, radius, EXACT).tangent(F[e, q]) for q in range(4)]
-         for e in range(len(F))]
-    )  # fmt: skip
-    # p d2J/dF2
-    for i, j, v in ((0, 3, f4), (1, 2, -f4), (0, 4, f3), (3, 4, f0), (1, 4, -f2), (2, 4, -f1)):
-        A[..., i, j] += p * v
-        A[..., j, i] += p * v
-    cof = np.stack([f3 * f4, -f2 * f4, -f1 * f4, f0 * f4, f0 * f3 - f1 * f2])
-
-    def strain(v, x):
-        return (v.grad[0, 0], v.grad[0, 1], v.grad[1, 0], v.grad[1, 1], v[0] / x[0])
-
-    @skfem.BilinearForm
-    def stiffness(u, v, w):
-        du, dv = strain(u, w.x), strain(v, w.x)
-        terms = sum(dv[i] * w["A"][i, j] * du[j] for i in range(5) for j in range(5))
-        return terms * 2 * np.pi * w.x[0]
-
-    @skfem.LinearForm
-    def dilatation(v, w):
-        dv = strain(v, w.x)
-        return sum(w["cof"][i] * dv[i] for i in range(5)) * 2 * np.pi * w.x[0]
-
-    reference = stiffness.assemble(basis, A=np.moveaxis(A, (2, 3), (0, 1))).toarray()
-    for e in range(basis.nelems):
-        only = np.zeros_like(cof)
-        only[:, e] = cof[:, e]
-        gradient = dilatation.assemble(basis, cof=only)
-        k = K * (1.0 - np.log(theta[e])) / (theta[e] ** 2 * total[e])
-        reference += k * np.outer(gradient, gradient)
-    assert tangent == pytest.approx(reference, abs=1e-10 * np.abs(reference).max())

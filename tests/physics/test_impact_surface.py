@@ -1,6 +1,7 @@
 """What earlier touches left: a tip in a crater, a second touch beside the first, scars."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,6 +76,14 @@ def test_more_imprints_than_are_kept_apart_never_raise_the_surface() -> None:
             assert after >= su.height(before, before[su.COUNT], place)[0] - 1e-18
 
 
+def rod(angle: float, speed: float, mu: float, **seams: object) -> Scene:
+    """The thesis's rod on iron, by the fitted law."""
+    return scene_of(
+        LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, friction=Friction(mu),
+        approach=Approach(speed, math.radians(angle)), **seams,
+    )  # fmt: skip
+
+
 def ball(law: object = JACKSON_GREEN) -> Scene:
     return scene_of(
         law, sphere=STEEL, flat=IRON, striker=Striker(mass=0.03, tip_radius=0.01),
@@ -128,12 +137,9 @@ def test_scar_of_the_rigid_rod(
     angle: float, speed: float, mu: float, slide: float, excess: float
 ) -> None:
     """An independent simulation of the thesis's three impacts, within the scan's 3 um."""
-    impact = strike(
-        scene_of(
-            LAWS["fitted"], sphere=STEEL.with_(E=212e9), flat=IRON, striker=ROD,
-            approach=Approach(speed, math.radians(angle)), friction=Friction(mu),
-        )
-    )  # fmt: skip
+    scene = rod(angle, speed, mu)
+    stiffer = replace(scene.pair, sphere=STEEL.with_(E=212e9))
+    impact = strike(scene.with_(pair=stiffer))
     assert impact.contacts == 1
     assert impact.sliding_length_m == pytest.approx(slide, abs=3e-6)
     assert impact.scar_excess_m == pytest.approx(excess, abs=3e-6)
@@ -142,10 +148,7 @@ def test_scar_of_the_rigid_rod(
 
 def test_scar_is_the_union_of_the_circles_of_contact() -> None:
     """The edge of the contact along the written history, loading and recovery."""
-    scene = scene_of(
-        LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, friction=Friction(0.1),
-        approach=Approach(3.45, math.radians(70.0)),
-    )  # fmt: skip
+    scene = rod(70.0, 3.45, 0.1)
     trace = traced(scene, points=2000)
     x, depth = trace.column("place_m"), trace.column("penetration_m")
     mark = trace.impact.spot.imprints[0]
@@ -171,13 +174,7 @@ def test_no_bending_rod_falls_through_the_flat() -> None:
     for angle in np.linspace(15.0, 80.0, 14):
         for speed in np.geomspace(0.5, 4.0, 8):
             for mu in (0.1, 0.2):
-                impact = strike(
-                    scene_of(
-                        LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, modes=modes,
-                        friction=Friction(mu), approach=Approach(speed, math.radians(angle)),
-                    ),
-                    Settings(tolerance=1e-7),
-                )  # fmt: skip
+                impact = strike(rod(angle, speed, mu, modes=modes), Settings(tolerance=1e-7))
                 assert impact.outcome.completed
                 assert impact.restitution > 0.0
                 assert impact.clearance_m > -1e-9
@@ -190,10 +187,7 @@ def test_rounding_at_rest_does_not_decide_which_way_friction_acts() -> None:
     """The point rests for an instant, slips on, and is back at rest within one step."""
     modes = rod_modes(ROD.length, ROD.radius, STEEL, mass=ROD.mass, count=4)
     for speed in (1.5, 1.50000015):
-        scene = scene_of(
-            LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, modes=modes,
-            friction=Friction(0.13), approach=Approach(speed, math.radians(40.0)),
-        )  # fmt: skip
+        scene = rod(40.0, speed, 0.13, modes=modes)
         coarse, fine = (strike(scene, Settings(tolerance=x)) for x in (1e-8, 1e-12))
         assert coarse.contacts == fine.contacts == 4
         assert coarse.restitution == pytest.approx(fine.restitution, abs=1e-6)
@@ -202,13 +196,7 @@ def test_rounding_at_rest_does_not_decide_which_way_friction_acts() -> None:
 def test_named_sinks_add_up() -> None:
     """All that comes in is still there or lost to something with a name."""
     modes = rod_modes(ROD.length, ROD.radius, STEEL, mass=ROD.mass, count=6, loss_factor=0.02)
-    impact = strike(
-        scene_of(
-            LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, modes=modes,
-            friction=Friction(0.15), approach=Approach(1.0, math.radians(50.0)),
-        ),
-        TIGHT,
-    )  # fmt: skip
+    impact = strike(rod(50.0, 1.0, 0.15, modes=modes), TIGHT)
     came = impact.kinetic_before_J + impact.gravity_work_J
     left = impact.kinetic_after_J + impact.modal_stored_J + impact.support_stored_J
     lost = (
@@ -224,10 +212,7 @@ def test_named_sinks_add_up() -> None:
 def test_history_is_that_of_the_impact() -> None:
     """Rows end where the impact ends, and no row shows force without depth or the reverse."""
     modes = rod_modes(ROD.length, ROD.radius, STEEL, mass=ROD.mass, count=8)
-    scene = scene_of(
-        LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, modes=modes,
-        friction=Friction(0.1), approach=Approach(1.5, math.radians(40.0)),
-    )  # fmt: skip
+    scene = rod(40.0, 1.5, 0.1, modes=modes)
     trace, alone = traced(scene, TIGHT), strike(scene, TIGHT)
     assert trace.impact.contacts == alone.contacts > 1
     assert trace.impact.restitution == pytest.approx(alone.restitution, rel=1e-7)

@@ -198,28 +198,15 @@ def test_nothing_is_tabled_of_a_function_that_is_no_number() -> None:
 
 def test_a_dent_wider_than_any_scan_ends() -> None:
     # 23 g behind a tip of 16 nm at 5 km/s: the law's contact radius outgrows every number
+    flat = {"E_Pa": 1472.1941916177072, "nu": 8.559266787331163e-7,
+            "hardness_Pa": 2099.288698399014}  # fmt: skip
     ball = {
-        "shape": "sphere",
-        "tip_flat_radius_m": 1.767634043089143e-14,
-        "tip_radius_m": 1.5984525113821708e-8,
-        "mass_kg": 0.022639303675060042,
-    }
-    content = {
-        "target": {
-            "E_Pa": 1472.1941916177072,
-            "nu": 8.559266787331163e-7,
-            "hardness_Pa": 2099.288698399014,
-        },
-        "strikers": {
-            "ball": {
-                **ball,
-                "E_Pa": 19920.697094265295,
-                "nu": 4.1039944612038056e-7,
-                "Sy_Pa": 1000.0,
-            }
-        },
-        "impact": {"impact_speed_m_s": 5433.689379843022, "laws": ["ghaednia"]},
-    }
+        "shape": "sphere", "tip_flat_radius_m": 1.767634043089143e-14,
+        "tip_radius_m": 1.5984525113821708e-8, "mass_kg": 0.022639303675060042,
+        "E_Pa": 19920.697094265295, "nu": 4.1039944612038056e-7, "Sy_Pa": 1000.0,
+    }  # fmt: skip
+    blow = {"impact_speed_m_s": 5433.689379843022, "laws": ["ghaednia"]}
+    content = {"target": flat, "strikers": {"ball": ball}, "impact": blow}
     setup = setup_of(content, source="dent")
     found = strike(setup.scene(LAWS["ghaednia"]), setup.settings)
     assert found.peak_depth_m > 1.0

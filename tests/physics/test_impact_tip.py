@@ -114,17 +114,11 @@ def test_friction_at_rest_holds_what_sliding_friction_could_not(angle: float) ->
     assert 0.2 < critical < 0.62
 
     def impact(friction: Friction) -> object:
+        approach = Approach(0.5, math.radians(angle))
         return strike(
-            scene_of(
-                HERTZ,
-                sphere=ELASTIC,
-                flat=ELASTIC,
-                striker=rod,
-                friction=friction,
-                gravity=0.0,
-                approach=Approach(0.5, math.radians(angle)),
-            )
-        )
+            scene_of(HERTZ, sphere=ELASTIC, flat=ELASTIC, striker=rod, friction=friction,
+                     gravity=0.0, approach=approach)
+        )  # fmt: skip
 
     held = impact(Friction(0.1, mu_static=1.1 * critical, speed=1e-4))
     assert held.stuck
