@@ -21,18 +21,11 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
-from dentscope import fem
-from dentscope.campaigns import (
-    Design,
-    Store,
-    publish,
-    read_published,
-    standard_case,
-)
-from dentscope.core import COMPLETED, InputError, Material, Pair
+from dentscope.campaigns import Design, Store, publish, read_published
+from dentscope.core import InputError
 from dentscope.core.disk import Disk
 from dentscope.core.output import write_figure, write_file, write_files
-from dentscope.fem import Counters, Curve, Solution
+from made_cases import case_of, solution_of
 
 CALLS = ("create", "write", "sync", "rename", "remove", "make_folder", "sync_folder")
 _SECTOR = 512
@@ -243,26 +236,12 @@ def _lay_out(place, folders, contents):
 # --- writers ---
 
 
-def made(n):
-    flat = Material(E=1e11, nu=0.3, Sy=3e8)
-    return tuple(
-        standard_case(
-            f"c{i}", Pair(Material(E=2e11, nu=0.3, Sy=4e8 + 1e6 * i), flat, 1e-3),
-            deepest=0.01, n_depths=12, accuracy=fem.Accuracy.smoke(),
-        )
-        for i in range(n)
-    )  # fmt: skip
-
-
 def solved(case):
     depth = np.array(case.depths)
-    columns = dict.fromkeys(Curve.__dataclass_fields__, depth)
-    curve = Curve(**{**columns, "force": case.pair.sphere.Sy * depth})
-    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    return Solution(case.problem, case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
+    return solution_of(case, line=depth, force=case.pair.sphere.Sy * depth)
 
 
-CASES = made(4)
+CASES = tuple(case_of(f"c{i}", Sy=4e8 + 1e6 * i, n_depths=12) for i in range(4))
 DESIGN = Design("trial", "", lambda: CASES)
 
 

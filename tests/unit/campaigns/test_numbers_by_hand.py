@@ -4,13 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope import fem
-from dentscope.campaigns import standard_case
 from dentscope.campaigns.case import _rounded
 from dentscope.campaigns.cost import Forecast
 from dentscope.campaigns.quality import largest_step
 from dentscope.cli.campaign_progress import remarks
-from dentscope.core import Material, Pair
+from made_cases import case_of
 
 
 @pytest.mark.parametrize(
@@ -39,19 +37,8 @@ def test_a_step_is_seen_from_eight_depths_on_by_what_a_cubic_over_seven_leaves()
     assert largest_step(depth[:8], depth[:8]) == pytest.approx(0.0, abs=1e-9)
 
 
-def cases(n):
-    flat = Material(E=2e11, nu=0.3, Sy=3e8)
-    return [
-        standard_case(
-            f"c{k}", Pair(Material(E=2e11, nu=0.3, Sy=3e8 + 1e6 * k), flat, 1e-3), deepest=0.01,
-            n_depths=4, accuracy=fem.Accuracy.smoke(),
-        )
-        for k in range(n)
-    ]  # fmt: skip
-
-
 def test_a_case_under_way_still_takes_a_seventh_of_its_time_however_long_it_has() -> None:
-    [one] = cases(1)
+    one = case_of()
     forecast = Forecast([one], workers=1)
     whole = forecast.cost_s(one)
     assert forecast.left_s(0.5 * whole) == pytest.approx(0.5 * whole)

@@ -20,27 +20,19 @@ from dentscope.campaigns import (
     published_designs,
     read_curves,
     read_published,
-    standard_case,
 )
 from dentscope.campaigns.executor import Ended
 from dentscope.campaigns.schema import CURVE, UNLOADING_PROFILES
 from dentscope.cli import campaign as command
 from dentscope.cli import run
-from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
-from dentscope.fem import Counters, Curve, Profile, Solution, Unloading
+from dentscope.core import COMPLETED, Ending, InputError, Outcome
+from dentscope.fem import Profile, Unloading
+from made_cases import case_of, solution_of
 
 
 def made(n=6):
-    flat = Material(E=100e9, nu=0.3, Sy=3e8)
     return tuple(
-        standard_case(
-            f"case-{i}",
-            Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3),
-            deepest=0.01,
-            n_depths=30,
-            unload_depths=(0.004, 0.01),
-            accuracy=fem.Accuracy.smoke(),
-        )
+        case_of(f"case-{i}", Sy=4e8 + 1e7 * i, n_depths=30, unload_depths=(0.004, 0.01))
         for i in range(n)
     )
 
@@ -53,22 +45,21 @@ def solved(case, seed=0, factor=1.0):
     draw, R = np.random.default_rng(seed), case.pair.R
     delta = np.array(case.depths) * R
     noise = {name: 1.0 + 0.01 * draw.random(len(delta)) for name in CURVE}
-    curve = Curve(**{**noise, "delta": delta, "force": factor * delta * noise["force"] * 1e6})
+    force = factor * delta * noise["force"] * 1e6
+    plain = solution_of(case, **{**noise, "delta": delta, "force": force})
     n = 150 + seed
     shapes = {name: draw.random(n) for name in UNLOADING_PROFILES}
     unloadings = tuple(
-        Unloading(d, curve, 1e-6 * draw.random(), -1e-9, **shapes, steps=9, outcome=COMPLETED)
+        Unloading(d, plain.loading, 1e-6 * draw.random(), -1e-9, **shapes, steps=9,
+                  outcome=COMPLETED)
         for d in case.problem.unload_from
-    )
+    )  # fmt: skip
     # the mesh follows the contact: profiles have uneven numbers of nodes
     profiles = tuple(
         Profile(d, *np.sort(draw.random((5, n - k))) * 1e-3)
         for k, d in enumerate(case.problem.profiles)
     )
-    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    return Solution(
-        case.problem, case.accuracy, COMPLETED, curve, unloadings, (), counters, "m", profiles
-    )
+    return replace(plain, unloadings=unloadings, profiles=profiles)
 
 
 def stored(path, n=6, factor=1.0):
@@ -93,11 +84,23 @@ def test_parts_hold_every_case_once_below_their_size(tmp_path):
     ]
 
 
-def test_a_part_gives_back_what_the_run_stored(tmp_path):
-    source = stored(tmp_path / "run")
-    publish(DESIGN, source, tmp_path / "data")
-    published = {record.id: record for record in read_published(tmp_path / "data")}
-    for own in read_curves(source):
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A run and what was published of it, to be read only."""
+    place = tmp_path_factory.mktemp("published")
+    publish(DESIGN, stored(place / "run"), place / "data")
+    return place
+
+
+@pytest.fixture(scope="module")
+def part(folder):
+    (one,) = (folder / "data").glob("*.h5")
+    return one
+
+
+def test_a_part_gives_back_what_the_run_stored(folder):
+    published = {record.id: record for record in read_published(folder / "data")}
+    for own in read_curves(folder / "run"):
         other = published[own.id]
         assert (other.case, other.message, other.counters) == (own.case, "", own.counters)
         assert (other.accuracy, other.environment, other.mesh) == (
@@ -120,9 +123,7 @@ def test_a_part_gives_back_what_the_run_stored(tmp_path):
             )  # fmt: skip
 
 
-def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
-    [part] = publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
-
+def test_every_column_of_a_part_tells_its_unit_and_meaning(part):
     def look(name, item):
         if isinstance(item, h5py.Dataset):
             assert item.attrs["meaning"], name
@@ -132,8 +133,7 @@ def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
         file.visititems(look)
 
 
-def test_the_readme_of_the_data_set_names_every_column(tmp_path):
-    [part] = publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
+def test_the_readme_of_the_data_set_names_every_column(part):
     readme = (Path(__file__).parents[3] / "data" / "campaign" / "README.md").read_text()
     named = set(re.findall(r"`([\w-]+)`", readme))
     with h5py.File(part) as file:
@@ -157,9 +157,8 @@ def test_failed_cases_are_published_with_their_reason(tmp_path):
     assert hashlib.sha256(part.read_bytes()).hexdigest() in told
 
 
-def test_an_own_run_is_compared_with_what_is_published(tmp_path):
-    publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
-    published = read_published(tmp_path / "data")
+def test_an_own_run_is_compared_with_what_is_published(folder, tmp_path):
+    published = read_published(folder / "data")
     found = largest_difference(read_curves(stored(tmp_path / "other", factor=1.02)), published)
     assert (found.cases, found.same) == (6, True)
     assert found.force == pytest.approx(0.02, abs=1e-6)
@@ -234,9 +233,8 @@ def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):
     assert "12 of 12 cases are missing" in capsys.readouterr().err
 
 
-def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
-    publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
+def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(command, "PUBLISHED", folder / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
     told = capsys.readouterr().out
     assert "No run of your own" in told

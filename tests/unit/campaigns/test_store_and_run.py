@@ -23,36 +23,15 @@ from dentscope.campaigns import (
     distinct_cases,
     read_curves,
     run_design,
-    standard_case,
     status_of,
 )
 from dentscope.campaigns.executor import Ended
-from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
+from dentscope.core import COMPLETED, Ending, InputError, Outcome
 from dentscope.core.flow import Flow, Heating, Rate, swift
 from dentscope.core.output import cannot_write
-from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
-
-
-def pair(scale=1.0, R=1e-3, Sy=5e8):
-    return Pair(
-        sphere=Material(E=200e9 * scale, nu=0.3, Sy=Sy * scale),
-        flat=Material(E=100e9 * scale, nu=0.3, Sy=3e8 * scale),
-        R=R,
-    )
-
-
-def case(name="one", **changes):
-    return standard_case(
-        name, pair(**changes), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
-    )
-
-
-def solution(of, outcome=COMPLETED):
-    n = len(of.depths)
-    line = np.linspace(1.0, 2.0, n)
-    curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
-    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    return Solution(of.problem, of.accuracy, outcome, curve, (), (), counters, "mesh")
+from dentscope.fem import Profile, Snapshot
+from made_cases import case_of as case
+from made_cases import solution_of as solution
 
 
 class FakeExecutor:
@@ -252,41 +231,35 @@ def test_a_damaged_case_is_reported_and_left_alone(tmp_path, damage):
     assert files_of(tmp_path) == before
 
 
-def changed(path, change):
-    """Change a sealed file as one would who knows how to seal it."""
+def without_forces(path, change=lambda *_: None):
+    """Take the forces out of a sealed file, change it, and seal it as one who knows how."""
     with contents.open_image(path.read_bytes()) as old, contents.new_image() as new:
         for name in old:
             old.copy(name, new.file)
         for name, value in old.attrs.items():
             new.file.attrs[name] = value
-        change(new.file)
+        del new.file["loading/force"]
+        change(new.file, path)
     path.write_bytes(new.sealed)
 
 
 def test_a_missing_dataset_names_itself(tmp_path):
     run_design(design(1), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
     [path] = Store(tmp_path).files()
-
-    def take(file):
-        del file["loading"]["force"]
-
-    changed(path, take)
+    without_forces(path)
     with pytest.raises(InputError, match="loading/force"):
         read_curves(tmp_path)
 
 
 def linked(cases, path):
-    del cases["loading/force"]
     cases["loading/force"] = h5py.ExternalLink(str(path.with_name("other.h5")), "/x")
 
 
 def soft(cases, path):
-    del cases["loading/force"]
     cases["loading/force"] = h5py.SoftLink("/loading")
 
 
 def outside(cases, path):
-    del cases["loading/force"]
     path.with_name("raw").write_bytes(b"\1" * 32)
     cases.create_dataset(
         "loading/force", (4,), "f8", external=[(str(path.with_name("raw")), 0, 32)]
@@ -294,17 +267,14 @@ def outside(cases, path):
 
 
 def referring(cases, path):
-    del cases["loading/force"]
     cases["loading"].create_dataset("force", data=[cases.ref] * 4, dtype=h5py.ref_dtype)
 
 
 def absurd(cases, path):
-    del cases["loading/force"]
     cases.create_dataset("loading/force", (10**12,), "f8", chunks=(10**6,))
 
 
 def bomb(cases, path):
-    del cases["loading/force"]
     cases.create_dataset("loading/force", data=np.zeros(200_000), compression="gzip")
 
 
@@ -315,7 +285,7 @@ def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, mon
     [path] = Store(tmp_path).files()
     with h5py.File(path.with_name("other.h5"), "w") as other:
         other["x"] = np.ones(4)
-    changed(path, lambda file: trick(file, path))
+    without_forces(path, trick)
     with pytest.raises(InputError, match=r"force (is a link|is of kind|lies in|claims)"):
         Store(tmp_path).read(path.name[:64])
 

@@ -1,31 +1,25 @@
 """`dentscope campaign`: one table in both formats; what is said where a run is stopped."""
 
+import numpy as np
 import pandas
 import pytest
-from dentscope import campaigns, fem
-from dentscope.campaigns import DESIGNS, Design, Store, standard_case
+from dentscope import campaigns
+from dentscope.campaigns import DESIGNS, Design, Store
 from dentscope.campaigns.run import Status, Step
 from dentscope.cli import run
-from dentscope.core import COMPLETED, Material, Pair
 from dentscope.core.output import in_use
-from dentscope.fem import Counters, Curve, Solution
+from dentscope.fem import Curve
+from made_cases import case_of, solution_of
 
 
 @pytest.fixture
 def stored(tmp_path):
-    steel = Material(E=200e9, nu=0.3, Sy=5e8)
-    case = standard_case(
-        "one", Pair(steel, steel, 1e-3), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
-    )
     columns = {
         name: [1.0 / (k + 3) * (i + 1) for i in range(4)]
         for k, name in enumerate(Curve.__dataclass_fields__)
     }
-    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    curve = Curve(**{name: pandas.Series(column).to_numpy() for name, column in columns.items()})
-    Store(tmp_path).put(
-        case, Solution(case.problem, case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
-    )
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    Store(tmp_path).put(case_of(), solution_of(case_of(), **arrays))
     return tmp_path, columns
 
 
@@ -51,11 +45,8 @@ def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
 ):
     folder, _ = stored
     cases = [record.case for record in Store(folder).read_all()]
-    steel = Material(E=100e9, nu=0.3, Sy=5e8)
-    other = standard_case(
-        "two", Pair(steel, steel, 1e-3), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
-    )
-    monkeypatch.setitem(DESIGNS, "small", Design("small", "", lambda: (*cases, other)))
+    cases.append(case_of("two", Sy=4e8))
+    monkeypatch.setitem(DESIGNS, "small", Design("small", "", lambda: tuple(cases)))
 
     def stop(*given, **options):
         raise KeyboardInterrupt
