@@ -8,6 +8,7 @@ one line.
 import tomllib
 from dataclasses import asdict
 
+import made_blows
 import pytest
 import tomlkit
 from dentscope.cli.shared.keys import keys_of
@@ -18,28 +19,9 @@ from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import law_named
 from dentscope.start.ball_file import read_ball
 
-BALL = """
-name = "ball"
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.05e8
-density_kg_m3 = 7870
-thickness_m = 0.03
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 1.7e9
-density_kg_m3 = 7800
-[friction]
-coefficient = 0.1
-[impact]
-angle_deg = 60
-impact_speed_m_s = 1.0
-laws = ["fitted"]
-"""
+BALL = 'name = "ball"\n' + made_blows.BALL.replace("7870", "7870\nthickness_m = 0.03").replace(
+    "[impact]", "[friction]\ncoefficient = 0.1\n[impact]\nangle_deg = 60"
+)
 ROD = BALL.replace('shape = "sphere"', 'shape = "rod"\nradius_m = 0.005\nlength_m = 0.1').replace(
     "density_kg_m3 = 7800", "mass_kg = 0.06\ndensity_kg_m3 = 7800"
 )

@@ -6,60 +6,16 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
-
-BALL = """
-name = "ball"
-[target]
-E_Pa = 2e11
-nu = 0.3
-Sy_Pa = 3e8
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-mass_kg = 0.004
-E_Pa = 2e11
-nu = 0.3
-[impact]
-impact_speed_m_s = 1.0
-laws = ["hertz"]
-"""
-CASE = """
-radius_m = 0.01
-[sphere]
-E_Pa = 2e11
-nu = 0.3
-[flat]
-E_Pa = 2e11
-nu = 0.3
-Sy_Pa = 3e8
-[load]
-max_delta_over_R = 0.01
-[accuracy]
-level = "smoke"
-"""
-ROD = """
-[striker]
-tip_radius_m = 0.0088
-radius_m = 0.0088
-length_m = 0.3048
-mass_kg = 0.4607
-[[trial]]
-angle_deg = 45
-impact_speed_m_s = 2.18
-friction_impulse_ratio = 0.13
-restitution = 0.49
-permanent_depth_m = 26e-6
-sliding_length_m = 1650e-6
-"""
+from dentscope.core.inputs.templates import CASE, INVERSE, template
 
 
 @pytest.fixture(autouse=True)
 def _folder_of_a_newcomer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     texts = {
-        "ball.toml": BALL,
+        "ball.toml": template("ball").partition("[sweep]")[0],
         "case.toml": CASE,
-        "rod.toml": ROD,
+        "rod.toml": INVERSE,
         "empty.toml": "",
         "broken.toml": "radius_m = = 1\n",
         "words.txt": "nothing to see\n",

@@ -1,39 +1,12 @@
 """`[mechanisms]` of an impact file: the mechanisms of a diagnosis, forward."""
 
-import tomllib
-
 import pytest
 from dentscope.core import InputErrors
 from dentscope.dynamics.files.blow import blow_of
-from dentscope.dynamics.files.setup import setup_of
 from dentscope.models import LAWS
+from made_blows import BALL, blow, setup
 
 LAW = LAWS["fitted"]
-BALL = """
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.05e8
-density_kg_m3 = 7870
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 1.7e9
-density_kg_m3 = 7800
-[impact]
-impact_speed_m_s = 1.0
-laws = ["fitted"]
-"""
-
-
-def setup(text):
-    return setup_of(tomllib.loads(text), source="ball.toml")
-
-
-def blow(text):
-    return blow_of(setup(text), [LAW])
 
 
 def test_waves_asked_for_are_those_of_the_support_of_that_name():

@@ -2,6 +2,7 @@
 
 import tomllib
 
+import made_blows
 import numpy as np
 import pytest
 from dentscope.dynamics.files.blow import blow_of
@@ -11,24 +12,9 @@ from dentscope.dynamics.told.picture import picture
 from dentscope.dynamics.told.rig_shape import rig_shape
 from dentscope.fitting.craters import crater_shape
 from dentscope.models import LAWS
+from made_blows import blow
 
-BALL = """
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.05e8
-density_kg_m3 = 7870
-thickness_m = 0.004
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 1.7e9
-density_kg_m3 = 7800
-[impact]
-impact_speed_m_s = 3.0
-"""
+BALL = made_blows.BALL.replace("7870", "7870\nthickness_m = 0.004").replace("= 1.0", "= 3.0")
 EQUAL = BALL.replace("1.7e9", "3.05e8")
 KINDS = {
     "ball": (BALL, 6, ["flat"]),
@@ -46,10 +32,6 @@ KINDS = {
             ["flat"]),
 }  # fmt: skip
 THIN = KINDS["rod"][0].replace("\nradius_m = 0.005", "\nradius_m = 0.001")
-
-
-def blow(text, law="fitted"):
-    return blow_of(setup_of(tomllib.loads(text), source="blow.toml"), [LAWS[law]])
 
 
 @pytest.mark.parametrize(("text", "panels", "left"), KINDS.values(), ids=KINDS)
@@ -76,10 +58,7 @@ def test_every_panel_has_words_and_something_in_it(text, panels, left):
 
 def test_a_law_by_which_the_blow_did_not_end_is_no_result():
     """Ten steps are too few by the second law too; neither has a number, a crater or a band."""
-    found = blow_of(
-        setup_of(tomllib.loads(BALL + "max_steps = 10\n"), source="blow.toml"),
-        [LAWS["fitted"], LAWS["hertz"]],
-    )
+    found = blow(BALL + "max_steps = 10\n", "fitted", "hertz")
     assert found.table() == [("restitution", "unfinished", "unfinished"),
                              ("largest mean pressure [MPa]", "", "")]  # fmt: skip
     assert found.checks() == found.rules() == []

@@ -2,7 +2,6 @@
 
 import csv
 import math
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -151,24 +150,11 @@ def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) ->
     assert rows[1]["restitution"] == ""
 
 
-BODIES = """
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.05e8
-[friction]
-coefficient = 0.2
-[strikers.one]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 1.7e9
-density_kg_m3 = 7800
-tip_radius_m = 0.005
-"""
+BODY = {"E_Pa": 2.0e11, "nu": 0.3}
 STRIKERS = {
-    "ball": 'shape = "sphere"\n',
-    "rod": 'shape = "rod"\nradius_m = 0.004\nlength_m = 0.2\nmass_kg = 0.05\n',
-    "two": 'shape = "sphere"\n',
+    "ball": {"shape": "sphere"},
+    "rod": {"shape": "rod", "radius_m": 0.004, "length_m": 0.2, "mass_kg": 0.05},
+    "two": {"shape": "sphere"},
 }
 ARRIVALS = (
     {"impact_speed_m_s": 1.0},
@@ -193,7 +179,11 @@ OTHER = {"impact_speed_m_s": "drop_height_m", "drop_height_m": "impact_speed_m_s
 
 
 def _set_up(striker, impact, sweep=None):
-    content = tomllib.loads(BODIES + STRIKERS[striker])
+    hard = {**BODY, "Sy_Pa": 1.7e9, "density_kg_m3": 7800, "tip_radius_m": 0.005}
+    content = {
+        "target": {**BODY, "Sy_Pa": 3.05e8}, "friction": {"coefficient": 0.2},
+        "strikers": {"one": {**hard, **STRIKERS[striker]}},
+    }  # fmt: skip
     if striker == "two":  # both free: the scene is of their relative motion, without gravity
         content["target"] |= {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.03}
     if "mass_kg" in impact:

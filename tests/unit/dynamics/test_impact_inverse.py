@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError
+from dentscope.core.inputs.templates import INVERSE
 from dentscope.dynamics.files.inverse_file import read_inverse
 from dentscope.dynamics.inverse import MeasuredScar, alpha, infer, mobility
 from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
@@ -34,29 +35,14 @@ def test_more_back_than_came_and_a_depth_beyond_the_tip_are_told() -> None:
     assert any("0.026 m is above the tip's radius" in line for line in found.objections)
 
 
-FILE = """
-[striker]
-tip_radius_m = 0.0088
-mass_kg = 0.4607
-length_m = 0.3048
-[[trial]]
-angle_deg = 45
-impact_speed_m_s = 2.18
-friction_impulse_ratio = 0.13
-restitution = 0.49
-permanent_depth_m = 26e-6
-sliding_length_m = 1650e-6
-"""
-
-
 def test_file_and_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "trials.toml"
-    file.write_text(FILE)
+    file.write_text(INVERSE)
     row = read_inverse(file)[0]
     assert row.inferred.duration == pytest.approx(1.38e-3, rel=0.01)
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 0
     assert (tmp_path / "trials-inverse.csv").exists()
-    file.write_text(FILE.replace("0.13", "0.9"))
+    file.write_text(INVERSE.replace("0.13", "0.9"))
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 2
     told = "trial.0.friction_impulse_ratio: 0.9 makes the tip stick"
     assert told in capsys.readouterr().err

@@ -1,7 +1,6 @@
 """Tuned numbers of the impact stage where they act, in cases that are worked out by hand."""
 
 import math
-import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -26,22 +25,6 @@ from dentscope.models import LAWS
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)
 STEEL = Material(E=2e11, nu=0.3, Sy=4e8, density=7800.0)
 OF = {m.name: m for m in MECHANISMS}
-SETUP = """
-name = "a"
-gravity_m_s2 = 0.0
-[target]
-E_Pa = 2e11
-nu = 0.3
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 5e-3
-density_kg_m3 = 7800
-E_Pa = 2e11
-nu = 0.3
-[impact]
-impact_speed_m_s = 1.0
-laws = ["hertz"]
-"""
 
 
 def scene(*, law="fitted", ball=HARD, flat=STEEL, radius=5e-3, mass=4e-3, speed=2.0, **more):
@@ -51,10 +34,14 @@ def scene(*, law="fitted", ball=HARD, flat=STEEL, radius=5e-3, mass=4e-3, speed=
 
 
 def setup(**changed):
-    """The set-up with numbers changed: `ball` and `target` hold keys of their tables."""
-    content = tomllib.loads(SETUP)
-    content["target"] |= changed.get("target", {})
-    content["strikers"]["ball"] |= changed.get("ball", {})
+    """An elastic ball with numbers changed: `ball` and `target` hold keys of their tables."""
+    body = {"E_Pa": 2e11, "nu": 0.3}
+    ball = {**body, "shape": "sphere", "tip_radius_m": 5e-3, "density_kg_m3": 7800}
+    content = {
+        "gravity_m_s2": 0.0, "target": body | changed.get("target", {}),
+        "strikers": {"ball": ball | changed.get("ball", {})},
+        "impact": {"impact_speed_m_s": 1.0, "laws": ["hertz"]},
+    }  # fmt: skip
     return setup_of(content, source="a.toml")
 
 

@@ -16,25 +16,21 @@ STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)
 HARD = Material(E=205e9, nu=0.3, density=7800.0)
 BALL = Striker(mass=4.084e-3, tip_radius=5e-3)
 
-TWO = """
+STATED = """mass_kg = 0.004084070449666731
+E_Pa = 2.05e11
+nu = 0.3
+Sy_Pa = 6.0e8
+density_kg_m3 = 7800
+"""
+TWO = f"""
 gravity_m_s2 = 0
 [target]
 shape = "sphere"
 radius_m = 0.005
-mass_kg = 0.004084070449666731
-E_Pa = 2.05e11
-nu = 0.3
-Sy_Pa = 6.0e8
-density_kg_m3 = 7800
-[strikers.ball]
+{STATED}[strikers.ball]
 shape = "sphere"
 tip_radius_m = 0.005
-mass_kg = 0.004084070449666731
-E_Pa = 2.05e11
-nu = 0.3
-Sy_Pa = 6.0e8
-density_kg_m3 = 7800
-[impact]
+{STATED}[impact]
 impact_speed_m_s = 1
 laws = ["fitted"]
 """

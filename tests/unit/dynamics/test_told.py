@@ -1,5 +1,6 @@
 """What is said beside the numbers of a blow: bands, first yield, checks with their effect."""
 
+import copy
 import math
 import re
 import tomllib
@@ -391,32 +392,19 @@ laws = ["fitted", "hertz"]
     assert reason_above_one(central, strike(central)) == ""
 
 
-SOFT = """
-gravity_m_s2 = 0.0
-[target]
-E_Pa = 2e11
-nu = 0.3
-Sy_Pa = 2e9
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-E_Pa = 2e11
-nu = 0.3
-Sy_Pa = 3e8
-density_kg_m3 = 7800
-[impact]
-impact_speed_m_s = 1.0
-[sweep]
-impact_speed_m_s = SPEEDS
-"""
+def soft_ball(*speeds):
+    """A ball softer than its flat, swept."""
+    body = {"E_Pa": 2e11, "nu": 0.3}
+    ball = {**body, "Sy_Pa": 3e8, "density_kg_m3": 7800, "shape": "sphere", "tip_radius_m": 0.005}
+    return setup_of({
+        "gravity_m_s2": 0.0, "target": {**body, "Sy_Pa": 2e9}, "strikers": {"ball": ball},
+        "impact": {"impact_speed_m_s": 1.0}, "sweep": {"impact_speed_m_s": list(speeds)},
+    }, source="soft.toml")  # fmt: skip
 
 
 def test_a_law_that_makes_energy_is_told_from_motion_that_feeds_the_rebound():
     """Beyond a dent of 0.4 R the force of ghaednia jumps: its recovery returns what none gave."""
-    fast, slow = (
-        setup_of(tomllib.loads(SOFT.replace("SPEEDS", speeds)), source="soft.toml")
-        for speeds in ("[1.0, 150.0]", "[1e-3, 1.0]")
-    )
+    fast, slow = soft_ball(1.0, 150.0), soft_ball(1e-3, 1.0)
     swept = fast.swept(LAWS["ghaednia"])
     assert swept["kinetic_after_J"][1] > 2.0 * swept["kinetic_before_J"][1]
     (line,) = swept_above_one(swept.joined(fast.swept(LAWS["hertz"])))
@@ -472,27 +460,17 @@ def test_the_radius_of_a_sphere_counts_the_same_under_either_name():
     assert found[0] == found[1] > 0.0
 
 
-TUNGSTEN = """
-[target]
-E_Pa = 69e9
-nu = 0.33
-Sy_Pa = 1.5e8
-density_kg_m3 = 2700
-thickness_m = 0.015
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.010
-E_Pa = 6.2e11
-nu = 0.22
-Sy_Pa = 4.0e9
-density_kg_m3 = 14900
-[impact]
-drop_height_m = 0.4
-"""
+TUNGSTEN = {
+    "target": {"E_Pa": 69e9, "nu": 0.33, "Sy_Pa": 1.5e8, "density_kg_m3": 2700,
+               "thickness_m": 0.015},
+    "strikers": {"ball": {"shape": "sphere", "tip_radius_m": 0.010, "E_Pa": 6.2e11, "nu": 0.22,
+                          "Sy_Pa": 4.0e9, "density_kg_m3": 14900}},
+    "impact": {"drop_height_m": 0.4},
+}  # fmt: skip
 
 
 def told(changes, laws=("fitted",)):
-    content = merged(tomllib.loads(TUNGSTEN), changes)
+    content = merged(copy.deepcopy(TUNGSTEN), changes)
     found = blow_of(setup_of(content, source="t.toml"), [LAWS[name] for name in laws])
     return found, "\n".join([*found.rules(), *found.checks()])
 

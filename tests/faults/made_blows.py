@@ -1,0 +1,33 @@
+"""A file of a blow for the tests, a hard steel ball on iron, and what comes of it."""
+
+import tomllib
+
+from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.setup import setup_of
+from dentscope.models import LAWS
+
+BALL = """
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.05e8
+density_kg_m3 = 7870
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = 7800
+[impact]
+impact_speed_m_s = 1.0
+laws = ["fitted"]
+"""
+
+
+def setup(text):
+    return setup_of(tomllib.loads(text), source="ball.toml")
+
+
+def blow(text, *laws):
+    return blow_of(setup(text), [LAWS[name] for name in laws or ("fitted",)])
