@@ -1,6 +1,7 @@
 """Made-up records for the tests: a pulse of 4 ms on noise, written as a table."""
 
 import numpy as np
+from dentscope.reduce.gates import Refused
 from dentscope.reduce.kinds import load_kind
 
 RATE = 10_000.0
@@ -14,6 +15,15 @@ def half_sine(peak=800.0, long=4e-3, at=0.02, noise=1.0, seed=3):
 
 def run(path, **given):
     return load_kind("table").run(path, {"holds": "force", **given}, source="test")
+
+
+def refused(call, look="", by=Refused):
+    """Whether a call is refused, for what it looks like."""
+    try:
+        call()
+    except by as error:
+        return look in error.message
+    return False
 
 
 def table(path, cells, head="time_s,force_N", times=None):

@@ -144,17 +144,16 @@ def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(
     assert (grid.elements.linear >= 0).any()
 
 
+def surfaces_of(mesh, **given):
+    return Surfaces.build(
+        mesh.points, sphere=mesh.sphere_surface, flat=mesh.flat_surface, penalty=10.0, **given
+    )
+
+
 @pytest.mark.parametrize("flat_is_slave", [False, True])
 def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids, flat_is_slave):
     grid = grids[0]
-    mesh = grid.mesh
-    surfaces = Surfaces.build(
-        mesh.points,
-        sphere=mesh.sphere_surface,
-        flat=mesh.flat_surface,
-        penalty=10.0,
-        flat_is_slave=flat_is_slave,
-    )
+    surfaces = surfaces_of(grid.mesh, flat_is_slave=flat_is_slave)
     rng = np.random.default_rng(3)
     x = grid.mesh.points.copy()
     n = grid.mesh.n_sphere_points
@@ -198,14 +197,7 @@ def test_exchanging_slave_and_master_changes_little(monkeypatch):
 @pytest.mark.parametrize("flat_is_slave", [False, True])
 def test_friction_s_tangent_is_the_derivative_of_its_forces(grids, flat_is_slave):
     mesh = grids[0].mesh
-    surfaces = Surfaces.build(
-        mesh.points,
-        sphere=mesh.sphere_surface,
-        flat=mesh.flat_surface,
-        penalty=10.0,
-        flat_is_slave=flat_is_slave,
-        friction=1e-3,
-    )
+    surfaces = surfaces_of(mesh, flat_is_slave=flat_is_slave, friction=1e-3)
     rng = np.random.default_rng(5)
     axis = mesh.points[:, 0] == 0.0
     before = mesh.points.copy()

@@ -1,9 +1,11 @@
 """Tuned numbers of clips, scans, markers and sounds where they act, worked out by hand."""
 
 import math
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
+import made_records
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
@@ -30,15 +32,7 @@ from dentscope.reduce.video import reduction, tracking
 from dentscope.reduce.video.reduction import Optics, VideoReduction, _contacts, _timed
 from dentscope.reduce.video.tracking import _rod_shape, _without_reflection, track_ball
 
-
-def refused(call) -> bool:
-    """Whether a call refuses."""
-    try:
-        call()
-    except InputError:
-        return True
-    return False
-
+refused = partial(made_records.refused, by=InputError)
 
 # --- pictures ---
 

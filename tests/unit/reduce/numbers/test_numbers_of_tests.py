@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.reduce.gates import Refused
 from dentscope.reduce.measured import Measured
 from dentscope.reduce.press import curve
 from dentscope.reduce.press.columns import PressRecord
@@ -15,6 +14,7 @@ from dentscope.reduce.press.cycles import Cycle, cycles_of
 from dentscope.reduce.press.reduction import _from_cycles
 from dentscope.reduce.table.rise import _Line, _up_to, elastic_rise
 from dentscope.reduce.table.tension import _no_metal, _rows, reduce_tension
+from made_records import refused
 
 
 def line(compliance: float) -> _Line:
@@ -102,13 +102,8 @@ def pressed(load, depth=None) -> PressRecord:
     return PressRecord(load, depth, 0, np.zeros(load.size), None, "")
 
 
-def refuses(look: str, record: PressRecord) -> bool:
-    """Whether the cycles of a record are refused for what it looks like."""
-    try:
-        cycles_of(record)
-    except Refused as refused:
-        return look in refused.message
-    return False
+def refuses(look, record):
+    return refused(lambda: cycles_of(record), look)
 
 
 UP, DOWN = np.linspace(0.0, 1.0, 101), np.linspace(1.0, 0.0, 101)[1:]

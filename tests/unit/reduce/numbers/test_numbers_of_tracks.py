@@ -26,17 +26,9 @@ from dentscope.reduce.bounces.track import Track, on_the_body
 from dentscope.reduce.bounces.view import Launch, Stage, View
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.measured import Measured
+from made_records import refused
 
 NO_FALL = View(0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-def refused(call) -> bool:
-    """Whether a call refuses."""
-    try:
-        call()
-    except Refused:
-        return True
-    return False
 
 
 @pytest.mark.parametrize(("off", "kept"), [(0.19, 3), (0.21, 2)])

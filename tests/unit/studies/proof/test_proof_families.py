@@ -292,29 +292,25 @@ def test_metals_are_as_far_off_as_was_drawn(law):
     assert metals.draw_metal(rng, glass, family=law, z={}) is glass
 
 
-def test_an_effect_is_placed_where_its_readings_change():
-    """A lost share of the speed: every dent smaller alike, nothing along the radius."""
-    rng = np.random.default_rng(2)
-    rig = benches.balls_normal(rng)
+def places_of_dents(change):
+    """Where a change of all dents, a function of the logarithm of their speeds, is placed."""
+    rig = benches.balls_normal(np.random.default_rng(2))
     seen = simulate.Visibility.of(rig, family=at.CAVITY, z={})
     n = len(seen.rig)
-    change = np.zeros(len(seen.weight))
+    changed = np.zeros(len(seen.weight))
     depth = list(rig.noise).index("permanent_depth_m")
-    speed = np.log(seen.rig.speed)
-    change[depth * n : (depth + 1) * n] = 9.0 * (speed - speed.mean())
-    first = seen.places(change)[0]
+    changed[depth * n : (depth + 1) * n] = change(np.log(seen.rig.speed))
+    return seen.places(changed)
+
+
+def test_an_effect_is_placed_where_its_readings_change():
+    """A lost share of the speed: every dent smaller alike, nothing along the radius."""
+    first = places_of_dents(lambda speed: 9.0 * (speed - speed.mean()))[0]
     assert first[:2] == ("permanent_depth_m", "impact speed")
 
 
 def test_an_effect_has_no_place_where_its_readings_do_not_change():
     """Friction moves no restitution, though the strength that would repair a dent moves both."""
-    rng = np.random.default_rng(2)
-    rig = benches.balls_normal(rng)
-    seen = simulate.Visibility.of(rig, family=at.CAVITY, z={})
-    n = len(seen.rig)
-    change = np.zeros(len(seen.weight))
-    depth = list(rig.noise).index("permanent_depth_m")
-    change[depth * n : (depth + 1) * n] = 9.0
-    score = {(name, along): z for name, along, z in seen.places(change)}
+    score = {(name, along): z for name, along, z in places_of_dents(lambda speed: 9.0)}
     assert score["permanent_depth_m", "overall"] > 1.0
     assert max(z for (name, _), z in score.items() if name != "permanent_depth_m") == 0.0
