@@ -34,9 +34,7 @@ def show_materials(
         try:
             entry_named(name)
         except InputError as error:
-            raise InputError(
-                error.message, source="command line", key="NAME", allowed=error.allowed
-            ) from None
+            raise error.at("command line", "NAME") from None
     for one in found:
         listed = ", ".join(_number(one, key) for key in ("E_Pa", "Sy_Pa", "hardness_Pa")
                            if key in one.numbers)  # fmt: skip

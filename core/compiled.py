@@ -21,7 +21,7 @@ _STAGES = ("core", "fem", "models", "dynamics", "discrepancy", "studies")
 # limit: names that are tried for a folder of one's own [-]: more are an attack
 _MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
-_COMPILES = re.compile(r"numba|njit|_kernel\b")
+_COMPILES = re.compile(r"numba|njit|_kernel\b|@kernel\b")
 _RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
 
@@ -97,13 +97,7 @@ def _own(place: Path, *others: Path) -> Path:
             folder.mkdir(mode=0o700)
         with suppress(OSError):
             about = folder.lstat()
-            if _is_own(about):
+            shared = about.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+            if stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid() and not shared:
                 return folder
     return _own(*others) if others else Path(tempfile.mkdtemp(prefix="dentscope-"))
-
-
-def _is_own(about: os.stat_result) -> bool:
-    others = stat.S_IWGRP | stat.S_IWOTH
-    return (
-        stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid() and not about.st_mode & others
-    )

@@ -42,11 +42,7 @@ def printable(text: str) -> str:
     >>> printable("a\x1b[2J\nb")
     'a\\x1b[2J\\nb'
     """
-    return text if text.isprintable() else "".join(map(_printable, text))
-
-
-def _printable(character: str) -> str:
-    return character if character.isprintable() else repr(character)[1:-1]
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 class InputError(ValueError):
@@ -64,14 +60,7 @@ class InputError(ValueError):
     'pair.toml: sphere.E_Pa: -2e11 is negative (allowed: a number above 0)'
     """
 
-    def __init__(
-        self,
-        message: str,
-        *,
-        source: str = "",
-        key: str = "",
-        allowed: str = "",
-    ) -> None:
+    def __init__(self, message: str, *, source: str = "", key: str = "", allowed: str = "") -> None:
         self.message = message
         self.source = source
         self.key = key
@@ -79,6 +68,10 @@ class InputError(ValueError):
         shown = (source, shortened(key, _KEY_SHOWN), shortened(message, _MESSAGE_SHOWN))
         head = ": ".join(part for part in shown if part)
         super().__init__(printable(f"{head} (allowed: {allowed})" if allowed else head))
+
+    def at(self, source: str, key: str) -> InputError:
+        """Return the same mistake where a person finds it."""
+        return InputError(self.message, source=source, key=key, allowed=self.allowed)
 
 
 class InputErrors(InputError):

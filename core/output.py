@@ -205,8 +205,8 @@ def panels(count: int) -> tuple[Figure, list[Any]]:
 def write_figure(figure: Any, path: Path, *, dpi: float, **options: Any) -> Path:
     """Write a matplotlib figure as PNG, whole or not at all."""
     stream = io.BytesIO()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of matplotlib, on how long a legend takes
+    # of matplotlib, on how long a legend takes
+    with warnings.catch_warnings(action="ignore", category=UserWarning):
         figure.savefig(stream, format="png", dpi=dpi, **options)
     return write_file(path, stream.getvalue())
 

@@ -43,13 +43,24 @@ def file_digest(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
+@cache
 def environment() -> dict[str, str]:
     """Versions of Python and of the packages that influence numbers, and the source.
 
     `commit` is for people; `source` is a digest of the files that results come from, which also
     tells edited ones apart. Both are those of the first call: code that is loaded stays.
     """
-    return dict(_environment())
+    from .. import __version__
+
+    found = {"dentscope": __version__, "python": platform.python_version()}
+    for name in _RECORDED_PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "absent"
+    found["commit"] = source_commit()
+    found["source"] = _source()
+    return found
 
 
 def differences(mine: Mapping[str, str], other: Mapping[str, str]) -> list[str]:
@@ -70,21 +81,6 @@ def differences(mine: Mapping[str, str], other: Mapping[str, str]) -> list[str]:
             f"source of commit {mine.get('commit', 'none')}, there {other.get('commit', 'none')}"
         )
     return lines
-
-
-@cache
-def _environment() -> dict[str, str]:
-    from .. import __version__
-
-    found = {"dentscope": __version__, "python": platform.python_version()}
-    for name in _RECORDED_PACKAGES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "absent"
-    found["commit"] = source_commit()
-    found["source"] = _source()
-    return found
 
 
 def _source() -> str:

@@ -27,7 +27,7 @@ from .errors import InputError
 from .flow import FLOW_LAST
 from .inputs.materials import Mistyped, filled
 from .inputs.names import FileName
-from .inputs.rig_numbers import RigNumbers, most_inertia, solid_inertia
+from .inputs.rig_numbers import RigNumbers, solid_inertia
 from .inputs.toml_input import InputTable
 from .material import Material
 from .observables import GAUGE_KEYS, NOISE_KEYS
@@ -167,6 +167,19 @@ Friction = Annotated[Quantity, _between(0.0, 20.0)]
 Poisson = Annotated[Quantity, _within(lambda x: 0.0 <= x < 0.5, "0 <= nu < 0.5")]
 
 
+def _below(key: str, units: str = "", times: float = 1.0) -> Callable[..., Quantity | None]:
+    """Hold a quantity below another one of its table, or so many times that."""
+    named = key if times == 1.0 else f"{times:g} {key}"
+
+    def check(given: Quantity | None, info: ValidationInfo) -> Quantity | None:
+        other = info.data.get(key)
+        if given is not None and other is not None and given.value >= times * other.value:
+            raise ValueError(f"below {named} = {times * other.value:g}{units}")
+        return given
+
+    return check
+
+
 class MaterialTable(InputTable):
     """What every input file may say of a body's metal.
 
@@ -203,13 +216,7 @@ class MaterialTable(InputTable):
         """Yield strength as far as the file says it [Pa]."""
         return self.Sy_Pa
 
-    @field_validator("Sy_Pa")
-    @classmethod
-    def _below_the_modulus(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
-        modulus = info.data.get("E_Pa")
-        if given is not None and modulus is not None and given.value >= modulus.value:
-            raise ValueError(f"below E_Pa = {modulus.value:g}; both in Pa")
-        return given
+    _below_the_modulus = field_validator("Sy_Pa")(_below("E_Pa", "; both in Pa"))
 
     def numbers(self, key: str, *, source: str = "") -> dict[str, float]:
         """Return the numbers of this table by their keys, of what is not stated those that follow.
@@ -262,13 +269,7 @@ class BodyTable(MaterialTable):
     flow_curve: str = ""
     """File beside this one: true stress over plastic strain as measured."""
 
-    @field_validator("hardness_Pa")
-    @classmethod
-    def _softer_than_elastic(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
-        modulus = info.data.get("E_Pa")
-        if given is not None and modulus is not None and given.value >= TABOR * modulus.value:
-            raise ValueError(f"below {TABOR:g} E_Pa = {TABOR * modulus.value:g}; both in Pa")
-        return given
+    _softer_than_elastic = field_validator("hardness_Pa")(_below("E_Pa", "; both in Pa", TABOR))
 
     @property
     def strength(self) -> Quantity | None:
@@ -313,9 +314,11 @@ class TargetTable(BodyTable):
 
 def possible_inertia(inertia: Quantity | None, info: ValidationInfo) -> Quantity | None:
     """Return a striker's moment of inertia, or refuse what no body of this mass and size has."""
-    given = {k: value_of(info.data.get(k), 0.0) for k in ("mass_kg", "length_m")}
-    sizes = (value_of(info.data.get(k), 0.0) for k in ("radius_m", "tip_radius_m"))
-    most = most_inertia(given["mass_kg"], max(sizes), given["length_m"])
+    mass, length, *radii = (
+        value_of(info.data.get(k), 0.0) for k in ("mass_kg", "length_m", "radius_m", "tip_radius_m")
+    )
+    # leaves room for what is mounted on it, and finds a wrong unit
+    most = mass * (length + 2.0 * max(radii)) ** 2
     if inertia is not None and inertia.value > most > 0.0:
         raise ValueError(f"at most {most:.3g}, all mass twice as far out as the ends")
     return inertia
@@ -380,14 +383,7 @@ class StrikerTable(BodyTable):
             raise ValueError("this key is needed for a rod")
         return given
 
-    @field_validator("tip_flat_radius_m")
-    @classmethod
-    def _within_the_tip(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
-        tip = info.data.get("tip_radius_m")
-        if given is not None and tip is not None and given.value >= tip.value:
-            raise ValueError(f"below tip_radius_m = {tip.value:g}")
-        return given
-
+    _within_the_tip = field_validator("tip_flat_radius_m")(_below("tip_radius_m"))
     _possible_inertia = field_validator("inertia_kg_m2")(possible_inertia)
 
     @property
@@ -444,16 +440,13 @@ class EnvironmentTable(InputTable):
     """Temperature of bodies and surroundings."""
 
 
-def _known_noise(key: str) -> str:
-    if key not in NOISE_KEYS:
-        raise ValueError(", ".join((*NOISE_KEYS, _EDGE)))
-    return key
+def _one_of(known: tuple[str, ...], *elsewhere: str) -> AfterValidator:
+    def check(key: str) -> str:
+        if key not in known:
+            raise ValueError(", ".join((*known, *elsewhere)))
+        return key
 
-
-def _known_gauge(key: str) -> str:
-    if key not in GAUGE_KEYS:
-        raise ValueError(", ".join(GAUGE_KEYS))
-    return key
+    return AfterValidator(check)
 
 
 def _plain(given: Any) -> Any:
@@ -462,12 +455,12 @@ def _plain(given: Any) -> Any:
     return given["value"] if whole else given
 
 
-NoiseKey = Annotated[str, AfterValidator(_known_noise)]
+_EDGE = "dent_edge"
+NoiseKey = Annotated[str, _one_of(NOISE_KEYS, _EDGE)]
 NoiseStd = Annotated[float, BeforeValidator(_plain), Field(strict=True, gt=0.0)]
-GaugeKey = Annotated[str, AfterValidator(_known_gauge)]
+GaugeKey = Annotated[str, _one_of(GAUGE_KEYS)]
 GaugeStd = Annotated[float, Field(strict=True, gt=0.0, le=0.5)]
 DentEdge = Literal["contact", "rim"]
-_EDGE = "dent_edge"
 
 
 class Rig(InputTable):

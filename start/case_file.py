@@ -72,9 +72,7 @@ class CaseBody(MaterialTable):
         try:
             return metal.with_(Sy=Sy, flow=flow)
         except InputError as error:
-            raise InputError(
-                error.message, source=source, key=f"{key}.{error.key}", allowed=error.allowed
-            ) from None
+            raise error.at(source, f"{key}.{error.key}") from None
 
 
 class LoadTable(InputTable):
@@ -215,9 +213,7 @@ def case_of(
             snapshots=(last,), profiles=tuple(depths[k] for k in range(5, 60, 6)),
         )  # fmt: skip
     except InputError as error:
-        raise InputError(
-            error.message, source=source, key=f"load.{error.key}", allowed=error.allowed
-        ) from None
+        raise error.at(source, f"load.{error.key}") from None
     if level not in (known := get_args(Level)):
         raise InputError(repr(level), key="level", allowed=", ".join(known))
     return problem, getattr(fem.Accuracy, level)()

@@ -10,7 +10,7 @@ Nothing is loaded until a name is asked for that is not ours, or all of a group 
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import entry_points
 from typing import Any
 
 from ..errors import InputError
@@ -33,11 +33,8 @@ def added(group: str, name: str) -> Any:
         return found[0].load()
     except Exception as error:  # the package of somebody else raises what it likes
         reason = (str(error).splitlines() or [""])[0]
+        package = found[0].dist.name if found[0].dist else found[0].value
         raise InputError(
-            f"{name!r} of {_package(found[0])} cannot be loaded ({type(error).__name__}: {reason})",
+            f"{name!r} of {package} cannot be loaded ({type(error).__name__}: {reason})",
             key=group, allowed="a package that works: mend it, or uninstall it",
         ) from None  # fmt: skip
-
-
-def _package(point: EntryPoint) -> str:
-    return point.dist.name if point.dist else point.value

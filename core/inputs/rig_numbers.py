@@ -103,12 +103,3 @@ def solid_inertia(mass: float, radius: float, length: float) -> float:
     if length > 0.0:
         return mass * (length**2 / 12.0 + radius**2 / 4.0)
     return 0.4 * mass * radius**2
-
-
-def most_inertia(mass: float, radius: float, length: float) -> float:
-    """Return a moment of inertia [kg m^2] that no rod or sphere (L = 0) of this size exceeds.
-
-    m (L + 2 r)^2: all of its mass twice as far out as its ends, which leaves room for what is
-    mounted on it, and finds a wrong unit.
-    """
-    return mass * (length + 2.0 * radius) ** 2

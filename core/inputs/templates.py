@@ -50,9 +50,7 @@ _TEXTS = {
         _BALL,
         "",
         "drop_height_m = 0.5           # or impact_speed_m_s\n",
-        """[sweep]                       # every combination, into files NAME-sweep
-drop_height_m = { from = 0.01, to = 1.0, count = 25, spacing = "log" }
-""",
+        'drop_height_m = { from = 0.01, to = 1.0, count = 25, spacing = "log" }\n',
     ),
     "rod": (
         "A steel rod that meets the flat at an angle and bends",
@@ -63,9 +61,7 @@ angle_deg = 45                # between axis and flat; 90 is upright
 modes = 10                    # vibrations of the rod, lowest first; 0 is rigid
 loss_factor = 0.001           # their damping
 """,
-        """[sweep]                       # every combination, into files NAME-sweep
-angle_deg = [30, 45, 60, 75, 90]
-""",
+        "angle_deg = [30, 45, 60, 75, 90]\n",
     ),
     "oblique-ball": (
         "A steel ball that strikes a steel flat at an angle",
@@ -74,8 +70,7 @@ angle_deg = [30, 45, 60, 75, 90]
         """impact_speed_m_s = 2.0        # normal part
 angle_deg = 60                # between velocity and flat; gives the tangential speed
 """,
-        """[sweep]                       # every combination, into files NAME-sweep
-angle_deg = { from = 10, to = 90, count = 17 }
+        """angle_deg = { from = 10, to = 90, count = 17 }
 friction = [0.05, 0.1, 0.2]
 """,
     ),
@@ -98,7 +93,8 @@ def template(kind: str) -> str:
         f'name = "{kind}"\n\n'
         f"[target]                      # the flat\n{_METALS['target']}# thickness_m = 0.03\n\n"
         f"{striker}{_METALS['striker']}\n{friction}"
-        f"[impact]\n{impact}{_OPTIONS}\n{sweep}"
+        f"[impact]\n{impact}{_OPTIONS}\n"
+        f"[sweep]                       # every combination, into files NAME-sweep\n{sweep}"
     )
 
 

@@ -51,16 +51,14 @@ class InputTable(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _texts_can_be_shown(cls, given: Any) -> Any:
-        if isinstance(given, dict):
-            for text in (*given, *given.values()):
-                if isinstance(text, str) and _controls(text):
-                    raise ValueError("a text holds control characters")
+        texts = (*given, *given.values()) if isinstance(given, dict) else ()
+        for text in texts:
+            # what moves a terminal; line ends and tabs are text
+            if isinstance(text, str) and any(
+                unicodedata.category(one) == "Cc" and one not in "\n\t" for one in text
+            ):
+                raise ValueError("a text holds control characters")
         return given
-
-
-def _controls(text: str) -> bool:
-    """Whether a text holds what moves a terminal; line ends and tabs are text."""
-    return any(unicodedata.category(one) == "Cc" and one not in "\n\t" for one in text)
 
 
 Listed = Field(strict=False)

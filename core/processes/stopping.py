@@ -18,7 +18,6 @@ from typing import Any
 
 # limit: after how long an interruption that nobody has heard comes again [s]
 AGAIN_S = 0.5
-"""After how long an interruption that nobody has heard comes again."""
 
 _asked: list[int] = []
 """Signals that nobody has taken notice of."""

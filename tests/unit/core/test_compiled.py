@@ -43,7 +43,7 @@ def test_whatever_is_compiled_is_among_the_sources():
     assert not any(p.stem in ("draw", "report", "app") for p in compiled_sources(root))
 
 
-KERNELS = {"njit", "loading_kernel", "branch_kernel", "residual_kernel", "intrinsic"}
+KERNELS = {"njit", "kernel", "loading_kernel", "branch_kernel", "residual_kernel", "intrinsic"}
 
 
 def decorators(path: Path) -> set[str]:
