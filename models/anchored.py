@@ -129,9 +129,8 @@ def _grid(pair: Pair, last: float) -> Array:
 def _columns(law: ContactLaw, pair: Pair, D: Array) -> tuple[Array, ...]:
     """F/(E' R^2), a/R, permanent part, the sphere's part of it, exponent of unloading at D."""
     depth = D * pair.R
-    with warnings.catch_warnings():
-        # the grid begins and ends outside of what impacts ask for
-        warnings.simplefilter("ignore", DomainWarning)
+    # the grid begins and ends outside of what impacts ask for
+    with warnings.catch_warnings(action="ignore", category=DomainWarning):
         force = law.loading(pair, depth)
     sphere, flat = law.residual(pair, depth)
     rest = sphere + flat

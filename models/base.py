@@ -19,7 +19,7 @@ import copy
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
@@ -127,6 +127,11 @@ class ContactLaw(ABC):
         return f"{self.name}: {self.title}; {self.regime}; {self.standing.told}"
 
     @property
+    def about(self) -> dict[str, Any]:
+        """What is said of the law, by the names of these fields."""
+        return {f.name: getattr(self, f.name) for f in fields(ContactLaw)}
+
+    @property
     @abstractmethod
     def kernels(self) -> Kernels:
         """The compiled functions."""
@@ -134,11 +139,6 @@ class ContactLaw(ABC):
     def parameters(self, pair: Pair) -> Array:
         """Return the numbers that the kernels take, shape (n,)."""
         return np.array(common_parameters(pair))
-
-    def allowance(self, clause: str) -> float:
-        """Largest declared breach of `clause` (one of `CLAUSES`), as a fraction."""
-        sizes = (size for text, size in self.breaks if text.startswith(clause))
-        return max(sizes, default=0.0) / 100.0
 
     def loading(self, pair: Pairs, depth: Depths) -> Array:
         """Force on first loading.
@@ -242,10 +242,6 @@ def remembering(law: Law) -> Law:
     return kept
 
 
-def _no_numbers(common: Common) -> Sequence[float]:
-    return ()
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PublishedLaw(ContactLaw):
     """A law given by its four kernels and, where they need some, numbers of its own.
@@ -255,7 +251,7 @@ class PublishedLaw(ContactLaw):
     """
 
     own: Kernels
-    numbers: Callable[[Common], Sequence[float]] = _no_numbers
+    numbers: Callable[[Common], Sequence[float]] = lambda _common: ()
 
     @property
     def kernels(self) -> Kernels:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -71,14 +71,18 @@ def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, C
 
 def _correction(content: Mapping[str, Any], source: str) -> PairCorrection:
     for key, names in (("channels", tuple(CHANNELS)), ("groups", GROUPS)):
-        if tuple(content[key]) != names:
-            raise InputError(
-                f"{', '.join(content[key])}", source=source, key=f"correction.{key}",
-                allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
-            )  # fmt: skip
+        _check_names(content[key], names, key=f"correction.{key}", source=source)
     return PairCorrection(
         *(np.array(content[key], dtype=float) for key in ("centres", "reaches", "weights"))
     )
+
+
+def _check_names(found: Sequence[str], names: tuple[str, ...], *, key: str, source: str) -> None:
+    if tuple(found) != names:
+        raise InputError(
+            ", ".join(found), source=source, key=key,
+            allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
+        )  # fmt: skip
 
 
 def shipped_laws() -> tuple[ContactLaw, ...]:
@@ -99,11 +103,7 @@ def hardening_correction(content: Mapping[str, Any], *, source: str) -> Hardenin
     found = content.get("hardening")
     if found is None:
         return None
-    if tuple(found["corrected"]) != CORRECTED:
-        raise InputError(
-            f"{', '.join(found['corrected'])}", source=source, key="hardening.corrected",
-            allowed=f"{', '.join(CORRECTED)}; make the file anew with `dentscope fit`",
-        )  # fmt: skip
+    _check_names(found["corrected"], CORRECTED, key="hardening.corrected", source=source)
     return HardeningCorrection(
         np.array(found["low"]), np.array(found["high"]), np.array(found["weights"]),
         {name: float(size) for name, size in found["spread"].items()},

@@ -12,19 +12,16 @@ from numba import float64, njit, types
 from ..core.arrays import Array, Integers, numbers
 from ..core.errors import InputError
 from ..core.material import Pair
-from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE
+from .kernel import BRANCH, LOADING, SPLIT, VECTOR
 
 Depths = npt.ArrayLike
 Pairs = Pair | Sequence[Pair]
 
+# vectors of the pairs, which of them, depths
+_GIVEN = (float64[:, ::1], types.int64[::1], VECTOR)
 
-@njit(
-    types.void(
-        types.FunctionType(LOADING_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
-        float64[::1],
-    ),
-    cache=True, _nrt=False,
-)  # fmt: skip
+
+@njit(types.void(LOADING, *_GIVEN, VECTOR), cache=True, _nrt=False)
 def map_loading(kernel, par, row, depth, out):
     """Fill `out` with a loading kernel's answers."""
     for i in range(depth.size):
@@ -32,13 +29,7 @@ def map_loading(kernel, par, row, depth, out):
             out[i] = kernel(par[row[i]], depth[i])
 
 
-@njit(
-    types.void(
-        types.FunctionType(BRANCH_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
-        float64[::1], float64[::1],
-    ),
-    cache=True, _nrt=False,
-)  # fmt: skip
+@njit(types.void(BRANCH, *_GIVEN, VECTOR, VECTOR), cache=True, _nrt=False)
 def map_branch(kernel, par, row, depth, peak, out):
     """Fill `out` with the answers of a radius or unloading kernel."""
     for i in range(depth.size):
@@ -46,13 +37,7 @@ def map_branch(kernel, par, row, depth, peak, out):
             out[i] = kernel(par[row[i]], depth[i], peak[i])
 
 
-@njit(
-    types.void(
-        types.FunctionType(RESIDUAL_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
-        float64[::1], float64[::1],
-    ),
-    cache=True, _nrt=False,
-)  # fmt: skip
+@njit(types.void(SPLIT, *_GIVEN, VECTOR, VECTOR), cache=True, _nrt=False)
 def map_residual(kernel, par, row, peak, sphere, flat):
     """Fill both with a residual kernel's answers."""
     for i in range(peak.size):

@@ -31,16 +31,7 @@ from .closed_form import (
 )
 from .correction import PairCorrection
 from .driver import Depths, Pairs, depths_of
-from .kernel import (
-    N_COMMON,
-    E,
-    R,
-    branch_kernel,
-    common_parameters,
-    loading_kernel,
-    reader,
-    residual_kernel,
-)
+from .kernel import N_COMMON, E, R, common_parameters, kernel, power_recovery, reader
 from .uncertainty import Calibration, Uncertainty
 
 # limit: depth at which the law says how far finite elastic strain takes it from Hertz [R]
@@ -50,13 +41,13 @@ _FINITE = 0.01
 _pair_numbers = reader(PairNumbers, N_COMMON)  # behind the common numbers
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     D, pair = depth / par[R], _pair_numbers(par)
     return force_at(D, spread_at(D, pair).a, pair) * par[E] * par[R] * par[R]
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, _peak):
     return par[R] * spread_at(depth / par[R], _pair_numbers(par)).a
 
@@ -73,22 +64,17 @@ def _left_by(at, peak):
     return at.phi * left, (1.0 - at.phi) * left
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return _left_by(contact_of(par, peak), peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     at = contact_of(par, peak)
     force = at.F * par[E] * par[R] * par[R]
     sphere, flat = _left_by(at, peak)
-    residual = sphere + flat
-    if depth <= residual or peak <= residual:
-        return 0.0
-    if depth >= peak:
-        return force
-    return force * ((depth - residual) / (peak - residual)) ** at.N
+    return power_recovery(force, depth, peak, sphere + flat, at.N)
 
 
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
@@ -245,7 +231,7 @@ def closed_form_law(
     """Return the law with the given numbers: compact, or fitted where there is a correction."""
     # the stiffer body may be either: its part counts in full
     finite = 100.0001 * math.expm1(0.31 * math.sqrt(_FINITE) + 1.25 * _FINITE)
-    count = f"{len(COEFFICIENTS)} coefficients"
+    count, known = f"{len(COEFFICIENTS)} coefficients", dict(limits or {})
     return ClosedForm(
         name="compact" if correction is None else "fitted",
         title=f"dentscope, {count}"
@@ -255,15 +241,12 @@ def closed_form_law(
         equations="docs/closed-form.md",
         standing=Standing.OWN_SOURCE,
         domain=Domain.down_to(
-            (limits or {}).get("Delta_over_R", (0.0, math.inf))[1], note=_note(limits or {})
+            known.get("Delta_over_R", (0.0, math.inf))[1],
+            note=", ".join(f"{k} {low:.3g} to {high:.3g}" for k, (low, high) in known.items()),
         ),
         breaks=((f"not Hertz: finite elastic strain, at Delta/R = {_FINITE:g}", finite),),
         coefficients=dict(coefficients),
         correction=correction,
-        limits=dict(limits or {}),
+        limits=known,
         calibration=calibration,
     )
-
-
-def _note(limits: Mapping[str, tuple[float, float]]) -> str:
-    return ", ".join(f"{key} {low:.3g} to {high:.3g}" for key, (low, high) in limits.items())

@@ -49,8 +49,6 @@ from .uncertainty import LEAST, Uncertainty
 REPRESENTATIVE = 0.2
 """Plastic strain that stands for all of them, over a/R [-] (Tabor 1951)."""
 
-"""Plastic strain that stands for all of them, over a/R (Tabor)."""
-
 CORRECTED = ("depth", "force", "share", "part", "recovered", "exponent")
 """What is corrected: logarithms of Delta, F, the part of Delta that recovers and N + 1; the
 sphere's share of the approach and its part of the permanent depth by the logarithm of the odds."""
@@ -134,8 +132,9 @@ class HardeningLaw(ContactLaw):
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
         """Warn as the fitted law does, by the strengths at first yield."""
-        pairs = [pair] if isinstance(pair, Pair) else list(pair)
-        self.fitted.warn_outside([_without_flow(p) for p in pairs], depth)
+        pairs = [pair] if isinstance(pair, Pair) else pair
+        plain = [Pair(p.sphere.with_(flow=None), p.flat.with_(flow=None), p.R) for p in pairs]
+        self.fitted.warn_outside(plain, depth)
 
 
 def hardening_law(
@@ -153,11 +152,6 @@ def hardening_law(
         fitted=fitted,
         correction=correction,
     )
-
-
-def _without_flow(pair: Pair) -> Pair:
-    sphere, flat = (body.with_(flow=None) for body in (pair.sphere, pair.flat))
-    return Pair(sphere, flat, pair.R)
 
 
 def representative_strain(a: Array, yields_at: float) -> Array:

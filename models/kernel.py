@@ -19,13 +19,15 @@ VECTOR = types.Array(types.float64, 1, "C")
 LOADING_SIGNATURE = float64(VECTOR, float64)
 BRANCH_SIGNATURE = float64(VECTOR, float64, float64)
 RESIDUAL_SIGNATURE = types.UniTuple(float64, 2)(VECTOR, float64)
+LOADING = types.FunctionType(LOADING_SIGNATURE)
+BRANCH = types.FunctionType(BRANCH_SIGNATURE)
+SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 
 # No signature: a law is compiled when it is first asked, for what it is asked with.
 # error_model: no check for a division by zero, which costs as much as the division.
 # _nrt: no reference counts, which cost as much as the arithmetic; a kernel allocates nothing.
-loading_kernel = njit(cache=True, _nrt=False, error_model="numpy")
-branch_kernel = njit(cache=True, _nrt=False, error_model="numpy")
-residual_kernel = njit(cache=True, _nrt=False, error_model="numpy")
+kernel = njit(cache=True, _nrt=False, error_model="numpy")
+loading_kernel = branch_kernel = residual_kernel = kernel  # as laws of other packages have it
 
 
 class Common(NamedTuple):
@@ -113,7 +115,15 @@ def critical_force(pair: Pair) -> float:
     return common_parameters(pair).critical
 
 
-@loading_kernel
+@njit(cache=True, _nrt=False)
+def cubic(t, low, high, slope_low, slope_high):
+    """Cubic on 0 <= t <= 1 with the values and slopes of both ends."""
+    rise = high - low
+    bend = 3.0 * rise - 2.0 * slope_low - slope_high
+    return low + t * (slope_low + t * (bend + t * (slope_low + slope_high - 2.0 * rise)))
+
+
+@kernel
 def hertz_force(par, depth):
     """F = (4/3) E' sqrt(R) delta^(3/2) (Eqs. 1.3-1.6)."""
     return par[K_HERTZ] * depth * math.sqrt(depth)
@@ -128,3 +138,13 @@ def hertz_recovery(force_peak, depth, peak, residual):
         return force_peak
     x = (depth - residual) / (peak - residual)
     return force_peak * x * math.sqrt(x)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def power_recovery(force_peak, depth, peak, residual, exponent):
+    """Recovery of another power of the depth left, F_m ((d - d_r)/(d_m - d_r))^N."""
+    if depth <= residual or peak <= residual:
+        return 0.0
+    if depth >= peak:
+        return force_peak
+    return force_peak * ((depth - residual) / (peak - residual)) ** exponent

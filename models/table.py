@@ -14,7 +14,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -73,6 +73,7 @@ class PairTable:
         ours, theirs = _groups(self.pair), _groups(pair)
         return bool(np.allclose(ours, theirs, rtol=1e-6, atol=1e-12))
 
+    @cached_property
     def numbers(self) -> Array:
         """What the kernels read behind the common numbers."""
         x, force, radius = self._loading()
@@ -144,15 +145,11 @@ def recovery_exponent(x: Array, F: Array, left: Array, exponent: Array) -> Array
 def _elastic(x: Array, F: Array) -> Array:
     """N + 1 of a body that gives back all that it took, by ln depth and ln force."""
     force, D = np.exp(F), np.exp(x)
-    work = np.concatenate([[0.4 * force[0] * D[0]], np.zeros(len(x) - 1)])
-    work[1:] = work[0] + np.cumsum(_panels(x, F))
-    return np.asarray(force * D / work)
-
-
-def _panels(x: Array, F: Array) -> Array:
-    """Work over each interval of ln depth, of a force that is a power of the depth there."""
+    first = 0.4 * force[0] * D[0]
+    # over each interval the force is a power of the depth
     power = np.diff(F) / np.diff(x) + 1.0
-    return np.asarray((np.exp(F[1:] + x[1:]) - np.exp(F[:-1] + x[:-1])) / power)
+    panels = (np.exp(F[1:] + x[1:]) - np.exp(F[:-1] + x[:-1])) / power
+    return np.asarray(force * D / np.append(first, first + np.cumsum(panels)))
 
 
 def _groups(pair: Pair) -> list[float]:
@@ -177,7 +174,7 @@ class TableLaw(ContactLaw):
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; one without a table is refused."""
-        return np.concatenate([common_parameters(pair), _numbers(self._table(pair))])
+        return np.concatenate([common_parameters(pair), self._table(pair).numbers])
 
     def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
@@ -219,11 +216,6 @@ class TableLaw(ContactLaw):
             "the table is of another pair", source=self.name, key="law",
             allowed="; ".join(_told(table.pair) for table in self.tables),
         )  # fmt: skip
-
-
-@lru_cache(maxsize=64)
-def _numbers(table: PairTable) -> Array:
-    return table.numbers()
 
 
 def _told(pair: Pair) -> str:

@@ -22,7 +22,6 @@ FORMAT = "dentscope-table/1"
 
 # limit: largest file of a law that is read [bytes]: memory of a small machine
 MOST_BYTES = 20_000_000
-"""Largest file of a law that is read."""
 
 _MADE = "law.json of `dentscope case`"
 _Above = Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1e30)], ...], Listed]

@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from .base import Kernels
-from .kernel import K_HERTZ, N_COMMON, E, R, branch_kernel, loading_kernel, residual_kernel
+from .kernel import K_HERTZ, N_COMMON, E, R, cubic, kernel, power_recovery
 
 _COUNT, _FIRST, _STEP = range(N_COMMON, N_COMMON + 3)
 _START = N_COMMON + 3
@@ -29,11 +29,10 @@ def _column(par, column, x):
         return v0 + s0 * t
     if t > 1.0:
         return v1 + s1 * (t - 1.0)
-    rise = v1 - v0
-    return v0 + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise)))
+    return cubic(t, v0, v1, s0, s1)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     x = math.log(depth / par[R])
     if x < par[_FIRST]:
@@ -41,7 +40,7 @@ def _loading(par, depth):
     return math.exp(_column(par, _FORCE, x)) * par[E] * par[R] * par[R]
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, _peak):
     x = math.log(depth / par[R])
     if x < par[_FIRST]:
@@ -49,7 +48,7 @@ def _radius(par, depth, _peak):
     return math.exp(_column(par, _RADIUS, x)) * par[R]
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     x = math.log(peak / par[R])
     if x < par[_FIRST]:
@@ -59,18 +58,12 @@ def _residual(par, peak):
     return part * left, (1.0 - part) * left
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     sphere, flat = _residual(par, peak)
-    rest = sphere + flat
-    if depth <= rest or peak <= rest:
-        return 0.0
-    force = _loading(par, peak)
-    if depth >= peak:
-        return force
     x = math.log(peak / par[R])
     exponent = 1.5 if x < par[_FIRST] else max(_column(par, _EXPONENT, x), 1.0)
-    return force * ((depth - rest) / (peak - rest)) ** exponent
+    return power_recovery(_loading(par, peak), depth, peak, sphere + flat, exponent)
 
 
 TABLE_KERNELS = Kernels(_loading, _radius, _unloading, _residual)

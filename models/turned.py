@@ -76,11 +76,8 @@ def turned(law: ContactLaw) -> ContactLaw:
     """
     if isinstance(law, AnchoredLaw | TableLaw | TurnedLaw):
         return law
-    return TurnedLaw(
-        name=law.name, title=law.title, source=law.source, equations=law.equations,
-        standing=law.standing, domain=law.domain, breaks=law.breaks, read=law.read,
-        regime=_REGIMES.get(law.regime, law.regime), law=law,
-    )  # fmt: skip
+    regime = _REGIMES.get(law.regime, law.regime)
+    return TurnedLaw(**{**law.about, "regime": regime}, law=law)
 
 
 @lru_cache(maxsize=64)

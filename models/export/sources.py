@@ -19,7 +19,7 @@ from ...core.output import write_file
 from ..closed_form import COEFFICIENTS
 from ..fitted import ClosedForm
 from .lammps import STYLE, lammps_header, lammps_source
-from .tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
+from .tree import INPUTS, OUTPUTS, RESULTS, Lines, before, when_closed, when_open
 
 NAME = "dentscope_contact"
 
@@ -144,7 +144,7 @@ def contact({", ".join(INPUTS)}):
 {python.lines(when_open(), indent=8)}
     else:
 {python.lines(when_closed(law.correction), indent=8)}
-    return {", ".join(f"out_{name}" for name in OUTPUTS)}
+    return {", ".join(RESULTS)}
 '''
 
 
@@ -195,11 +195,11 @@ dentscope_result {NAME}({_c_inputs()})
 {local.lines(before())}
     if (D <= 0.0) {{
 {local.lines(when_open(), indent=8)}
-        const dentscope_result result = {{{", ".join(f"out_{name}" for name in OUTPUTS)}}};
+        const dentscope_result result = {{{", ".join(RESULTS)}}};
         return result;
     }}
 {local.lines(when_closed(law.correction))}
-    const dentscope_result result = {{{", ".join(f"out_{name}" for name in OUTPUTS)}}};
+    const dentscope_result result = {{{", ".join(RESULTS)}}};
     return result;
 }}
 
@@ -244,9 +244,8 @@ def fortran_source(law: ClosedForm) -> str:
     fortran = Language(number=lambda x: f"{x!r}_dp", name=_fortran_name)
     constants = replace(fortran, line="real(dp), parameter :: {target} = {value}")
     first, last = before(), when_closed(law.correction)
-    inputs, outputs = ([f"{way}_{n.lower()}" for n in names] for way, names in
-                       (("in", INPUTS), ("out", OUTPUTS)))  # fmt: skip
-    local = sorted({_fortran_name(name) for name, _ in (*first, *last)} - set(outputs))
+    inputs = [_fortran_name(name) for name in INPUTS]
+    local = sorted({_fortran_name(name) for name, _ in (*first, *last)} - set(RESULTS))
     text = f"""{_about(law, "! ")}
 module {NAME}_law
   implicit none
@@ -256,9 +255,9 @@ module {NAME}_law
 {constants.lines(_coefficients(law), indent=2)}
 contains
 
-  elemental subroutine {NAME}({", ".join([*inputs, *outputs])})
+  elemental subroutine {NAME}({", ".join([*inputs, *RESULTS])})
     real(dp), intent(in) :: {", ".join(inputs)}
-    real(dp), intent(out) :: {", ".join(outputs)}
+    real(dp), intent(out) :: {", ".join(RESULTS)}
     real(dp) :: {", ".join(local)}
 {fortran.lines(first)}
     if ({_fortran_name("D")} <= 0.0_dp) then
@@ -278,12 +277,11 @@ def matlab_source(law: ClosedForm) -> str:
     matlab = Language(
         "{target} = {value};", operators={" ** ": " .^ ", " * ": " .* ", " / ": " ./ "}
     )
-    outputs = [f"out_{name}" for name in OUTPUTS]
     by_mask = "\n".join(
         f"  {name} = {name} .* closed + ({matlab.expression(value)}) .* ~closed;"
         for name, value in when_open()
     )
-    return f"""function [{", ".join(outputs)}] = {NAME}({", ".join(INPUTS)})
+    return f"""function [{", ".join(RESULTS)}] = {NAME}({", ".join(INPUTS)})
 {_about(law, "% ")}
 {matlab.lines(_coefficients(law), indent=2)}
 {matlab.lines(before(), indent=2)}
@@ -300,12 +298,11 @@ def modelica_source(law: ClosedForm) -> str:
     modelica = Language("{target} := {value};", operators={" ** ": " ^ "})
     first, last = before(), when_closed(law.correction)
     coefficients = _coefficients(law)
-    outputs = [f"out_{name}" for name in OUTPUTS]
-    local = sorted({name for name, _ in (*coefficients, *first, *last)} - set(outputs))
+    local = sorted({name for name, _ in (*coefficients, *first, *last)} - set(RESULTS))
     return f"""function {NAME}
 {_about(law, "  // ")}
 {textwrap.indent(chr(10).join(f"input Real {name};" for name in INPUTS), "  ")}
-{textwrap.indent(chr(10).join(f"output Real {name};" for name in outputs), "  ")}
+{textwrap.indent(chr(10).join(f"output Real {name};" for name in RESULTS), "  ")}
 protected
 {textwrap.indent(chr(10).join(f"Real {name};" for name in local), "  ")}
 algorithm

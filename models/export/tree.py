@@ -15,6 +15,8 @@ from ..correction import CHANNELS, MOST, PairCorrection
 
 INPUTS = ("E_s", "nu_s", "Sy_s", "E_f", "nu_f", "Sy_f", "R", "depth")
 OUTPUTS = ("force", "contact_radius", "share", "residual_s", "residual_f", "exponent")
+RESULTS = tuple(f"out_{name}" for name in OUTPUTS)
+"""The outputs as the lines name them."""
 
 _CONSTANTS = {name: getattr(closed_form, name) for name in ("PI", "TINY", "SHARPEST")}
 _FROM_INPUTS = """

@@ -13,18 +13,9 @@ from __future__ import annotations
 import functools
 import math
 
-from numba import njit
-
 from ...core.errors import InputError
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, cubic, hertz_force, kernel
 from .johnson import HARDNESS
 from .residual import YIELD, bounded, brake, crater, recover, to_weaker
 
@@ -73,15 +64,7 @@ def _numbers_2012(common: Common) -> tuple[float, ...]:
     return depth, full, slope, common.k_hertz * depth * math.sqrt(depth)
 
 
-@njit(cache=True, _nrt=False)
-def cubic(t, low, high, slope_low, slope_high):
-    """Cubic on 0 <= t <= 1 with the values and slopes of both ends."""
-    rise = high - low
-    bend = 3.0 * rise - 2.0 * slope_low - slope_high
-    return low + t * (slope_low + t * (bend + t * (slope_low + slope_high - 2.0 * rise)))
-
-
-@loading_kernel
+@kernel
 def _loading_2012(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
@@ -93,7 +76,7 @@ def _loading_2012(par, depth):
     return cubic(t, par[_FORCE], par[_SLOPE] * par[_FULL], steep, par[_SLOPE] * width)
 
 
-@branch_kernel
+@kernel
 def _radius_2012(par, depth, peak):
     if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
@@ -104,12 +87,12 @@ def _radius_2012(par, depth, peak):
     return math.sqrt(par[R] * cubic(t, par[YIELD], 2.0 * par[_FULL], width, 2.0 * width))
 
 
-@residual_kernel
+@kernel
 def _residual_2012(par, peak):
     return crater(_loading_2012, _radius_2012, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading_2012(par, depth, peak):
     return recover(_loading_2012, _residual_2012, par, depth, peak)
 
@@ -129,13 +112,13 @@ def _numbers_2015(common: Common, meyer: float, hardness: float | None) -> tuple
     return depth, full, 2.0 * math.pi * common.R * pressure, meyer - 2.0
 
 
-@loading_kernel
+@kernel
 def _fade(par, depth):
     """Argument (delta - delta_y)/(delta_p - delta_y) of both secants."""
     return (depth - par[YIELD]) / (par[_FULL] - par[YIELD])
 
 
-@loading_kernel
+@kernel
 def _loading_2015(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
@@ -148,14 +131,14 @@ def _loading_2015(par, depth):
     return elastic + (1.0 - 1.0 / math.cosh((1.0 - meyer) * x)) * plastic
 
 
-@branch_kernel
+@kernel
 def _radius_2015(par, depth, peak):
     if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     return math.sqrt(par[R] * depth * (2.0 - 1.0 / math.cosh(_fade(par, depth))))
 
 
-@residual_kernel
+@kernel
 def _residual_2015(par, peak):
     if peak <= par[YIELD]:
         return 0.0, 0.0
@@ -163,7 +146,7 @@ def _residual_2015(par, peak):
     return to_weaker(par, bounded(_loading_2015, par, par[YIELD], peak, 1.5, left) * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading_2015(par, depth, peak):
     return recover(_loading_2015, _residual_2015, par, depth, peak)
 

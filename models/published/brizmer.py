@@ -15,7 +15,7 @@ import math
 from numba import float64, njit
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import Common, R, branch_kernel, loading_kernel, residual_kernel
+from ..kernel import Common, R, kernel
 from .residual import YIELD, bounded_crater, recover
 
 _LEAST_NU, _LAST = 0.2, 110.0
@@ -48,7 +48,7 @@ def _fade(w, exponent):
     return math.exp(1.0 / (1.0 - power)) if power > 1.0 else 0.0
 
 
-@loading_kernel
+@kernel
 def _area(par, depth):
     """A/(pi R)."""
     if depth <= par[YIELD]:
@@ -56,7 +56,7 @@ def _area(par, depth):
     return depth * (1.0 + _fade(depth / par[YIELD], par[_ALPHA]))
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return par[_STIFF] * depth * math.sqrt(depth)
@@ -65,17 +65,17 @@ def _loading(par, depth):
     return force if depth == known else force * _area(par, depth) / _area(par, known)
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     return math.sqrt(par[R] * _area(par, depth))
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return bounded_crater(_loading, _radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -10,14 +10,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, hertz_force, kernel
 from .residual import YIELD, bounded_crater, recover
 
 _PRESSURE = YIELD + 1
@@ -38,7 +31,7 @@ def _numbers(common: Common) -> tuple[float, float]:
     return yield_depth(common), yield_pressure(common)
 
 
-@branch_kernel
+@kernel
 def constant_volume_radius(par, depth, peak):
     """a^2 = R (2 delta - delta_y) beyond a law's own critical approach, R delta before it."""
     if depth <= par[YIELD]:
@@ -46,19 +39,19 @@ def constant_volume_radius(par, depth, peak):
     return math.sqrt(par[R] * (2.0 * depth - par[YIELD]))
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
     return math.pi * par[R] * (2.0 * depth - par[YIELD]) * par[_PRESSURE]
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -23,19 +23,7 @@ from numba import njit
 
 from ...core.material import Pair
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    E_WEAK,
-    N_COMMON,
-    ONSET,
-    SHARE,
-    Common,
-    R,
-    S,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import E_WEAK, N_COMMON, ONSET, SHARE, Common, R, S, hertz_force, kernel
 from . import residual
 from .hardness import slip_line_pressure
 from .jackson_green import growth_exponent
@@ -212,7 +200,7 @@ def _model_force(par, delta, updated, n, log_n):
     return we * elastic + wp * plastic
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= _ELASTIC * par[ONSET]:
         return hertz_force(par, depth)
@@ -227,7 +215,7 @@ def _loading(par, depth):
     return (1.0 - k) * hertz_force(par, depth) + k * force
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     w = depth / par[ONSET]
     if w <= _ELASTIC:
@@ -242,12 +230,12 @@ def _radius(par, depth, peak):
     return (1.0 - k) * start + k * _model_radius(par, delta, updated, n, log_n)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return residual.to_weaker(par, residual.ghaednia(peak / par[ONSET]) * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return residual.recover(_loading, _residual, par, depth, peak)
 

@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import R, branch_kernel, hertz_force, residual_kernel
+from ..kernel import R, hertz_force, kernel
 
 
-@branch_kernel
-def _radius(par, depth, peak):
+@kernel
+def hertz_radius(par, depth, peak):
+    """Contact radius, sqrt(R delta)."""
     return math.sqrt(par[R] * depth)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return hertz_force(par, depth)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return 0.0, 0.0
 
@@ -31,5 +32,5 @@ HERTZ = PublishedLaw(
     standing=Standing.OWN_SOURCE,
     domain=Domain(note="elastic, a/R below about 0.1"),
     read="the exact solution: a^2 = R delta and u_z(0) = delta, checked symbolically",
-    own=Kernels(hertz_force, _radius, _unloading, _residual),
+    own=Kernels(hertz_force, hertz_radius, _unloading, _residual),
 )

@@ -16,18 +16,7 @@ import numpy as np
 from numba import njit
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    CRITICAL,
-    N_COMMON,
-    ONSET,
-    C,
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import CRITICAL, N_COMMON, ONSET, C, Common, R, hertz_force, kernel
 from .residual import jackson, recover, to_weaker
 
 _PLASTIC = 1.9  # w below which the contact is taken as elastic
@@ -48,7 +37,7 @@ def _numbers(common: Common) -> tuple[float, float]:
     return growth_exponent(common.S, common.E), shallow
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     w = depth / par[ONSET]
     if w <= _PLASTIC:
@@ -71,7 +60,7 @@ def _force(par, w, log_w, H):
     return par[CRITICAL] * w * (elastic + plastic)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     w = depth / par[ONSET]
     if w <= _PLASTIC:
@@ -80,7 +69,7 @@ def _loading(par, depth):
     return _force(par, w, log_w, 2.84 * (1.0 - math.exp(-0.82 * math.exp(-0.35 * log_area))))
 
 
-@loading_kernel
+@kernel
 def _loading_2007(par, depth):
     w = depth / par[ONSET]
     if w <= _PLASTIC:
@@ -90,17 +79,17 @@ def _loading_2007(par, depth):
     return _force(par, w, log_w, 2.84 - 0.92 * (1.0 - math.cos(math.pi * x)))
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return to_weaker(par, jackson(peak / par[ONSET]) * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading_2007(par, depth, peak):
     return recover(_loading_2007, _residual, par, depth, peak)
 

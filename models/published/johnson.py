@@ -10,14 +10,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, hertz_force, kernel
 from .residual import YIELD, crater, recover
 
 HARDNESS = 2.8
@@ -31,26 +24,26 @@ def _numbers(common: Common) -> tuple[float, float]:
     return common.R * x * x, 2.0 * math.pi * common.R * HARDNESS * common.S
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
     return par[_SLOPE] * depth
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     return math.sqrt(2.0 * par[R] * depth)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return crater(_loading, _radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -14,14 +14,7 @@ import math
 from dataclasses import replace
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, hertz_force, kernel
 from .ceb import yield_depth
 from .residual import YIELD, bounded, etsion, to_weaker
 
@@ -35,7 +28,7 @@ def _numbers(common: Common, last: float) -> tuple[float, ...]:
     return depth, common.k_hertz * depth * math.sqrt(depth), full, last
 
 
-@loading_kernel
+@kernel
 def _area(par, w):
     """A/A_c."""
     if w <= _FIRST:
@@ -47,7 +40,7 @@ def _area(par, w):
     return area if w <= par[_BORDER] else min(area, 2.0 * w)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     w = depth / par[YIELD]
     if w <= _FIRST:
@@ -59,7 +52,7 @@ def _loading(par, depth):
     return par[_FULL] * _area(par, w)
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     w = depth / par[YIELD]
     if w <= _FIRST:
@@ -67,14 +60,14 @@ def _radius(par, depth, peak):
     return math.sqrt(par[R] * par[YIELD] * _area(par, w))
 
 
-@loading_kernel
+@kernel
 def _exponent(par, peak):
     """Exponent of the recovery, 1.5 w_m^-0.0331 (4.19, corrected)."""
     w = peak / par[YIELD]
     return 1.5 * math.exp(-0.0331 * math.log(w)) if w > _FIRST else 1.5
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     if peak <= par[YIELD]:
         return 0.0, 0.0
@@ -83,7 +76,7 @@ def _residual(par, peak):
     return to_weaker(par, bounded(_loading, par, par[YIELD], peak, n, left) * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     s, f = _residual(par, peak)
     x = (depth - s - f) / (peak - s - f)

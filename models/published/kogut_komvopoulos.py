@@ -13,16 +13,7 @@ import math
 from numba import njit
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    N_COMMON,
-    Common,
-    E,
-    R,
-    S,
-    branch_kernel,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import N_COMMON, Common, E, R, S, kernel
 from .residual import kogut_komvopoulos as residual_fraction
 from .residual import recover, to_weaker
 
@@ -58,7 +49,7 @@ def truncated_hertz(par, square, depth):
     return 2.0 * math.sqrt(2.0) / 3.0 * par[E] * depth * math.sqrt(square)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     square, strain = truncated(par, depth)
     if strain <= par[_LIMIT]:
@@ -69,7 +60,7 @@ def _loading(par, depth):
     return math.pi * square * par[S] * pressure / ratio
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     square, strain = truncated(par, depth)
     ratio = 2.0
@@ -78,7 +69,7 @@ def _radius(par, depth, peak):
     return math.sqrt(square / ratio)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     _, strain = truncated(par, peak)
     if strain <= par[_LIMIT]:
@@ -86,7 +77,7 @@ def _residual(par, peak):
     return to_weaker(par, par[_LEFT] * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

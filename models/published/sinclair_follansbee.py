@@ -10,15 +10,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    S,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, S, hertz_force, kernel
 from .ceb import constant_volume_radius
 from .residual import YIELD, bounded_crater, recover
 
@@ -35,7 +27,7 @@ def _numbers(common: Common) -> tuple[float, float]:
     return common.R * x * x, common.E / (common.R * common.S)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
@@ -44,12 +36,12 @@ def _loading(par, depth):
     return math.pi * square * min(pressure, _FULL) * par[S]
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -10,13 +10,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, hertz_force, kernel
 from .ceb import constant_volume_radius
 from .residual import YIELD, bounded_crater, recover
 
@@ -30,7 +24,7 @@ def _numbers(common: Common) -> tuple[float, float]:
     return depth, common.k_hertz * depth * math.sqrt(depth)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     w = depth / par[YIELD]
     if w <= 1.0:
@@ -41,12 +35,12 @@ def _loading(par, depth):
     return par[_FORCE] * spread * (_FULL / _FIRST)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -14,14 +14,8 @@ from dataclasses import replace
 from functools import partial
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, hertz_force, kernel
+from .hertz import hertz_radius
 from .residual import YIELD, crater, recover
 
 _FORCE, _SLOPE = YIELD + 1, YIELD + 2
@@ -33,24 +27,19 @@ def _numbers_at(pressure_over_S: float, common: Common) -> tuple[float, float, f
     return depth, common.k_hertz * depth * math.sqrt(depth), math.pi * common.R * p
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
     return par[_FORCE] + par[_SLOPE] * (depth - par[YIELD])
 
 
-@branch_kernel
-def _radius(par, depth, peak):
-    return math.sqrt(par[R] * depth)
-
-
-@residual_kernel
+@kernel
 def _residual(par, peak):
-    return crater(_loading, _radius, par, peak)
+    return crater(_loading, hertz_radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 
@@ -65,7 +54,7 @@ THORNTON = PublishedLaw(
     read="equations 1-5 of arXiv:2104.00344 and the closed-form restitution, equation 2 of "
     "Jackson, Green and Marghitu, Nonlinear Dyn. 60 (2010) 217, both as the public code "
     "ranssist/chiton-helmet-sim restates them; force, recovery and closed form agree to 4 digits",
-    own=Kernels(_loading, _radius, _unloading, _residual),
+    own=Kernels(_loading, hertz_radius, _unloading, _residual),
     numbers=partial(_numbers_at, 1.6),
 )
 

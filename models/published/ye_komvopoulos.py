@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import N_COMMON, ONSET, Common, S, branch_kernel, loading_kernel, residual_kernel
+from ..kernel import N_COMMON, ONSET, Common, S, kernel
 from .kogut_komvopoulos import ELASTIC, SMALLEST, truncated, truncated_hertz
 from .residual import jackson, recover, to_weaker
 
@@ -22,7 +22,7 @@ def _numbers(common: Common) -> tuple[float]:
     return (float(common.E / common.S),)
 
 
-@loading_kernel
+@kernel
 def _area_ratio(par, Q):
     """Truncated over real area (4.26, the square being that of ln Q)."""
     if Q <= ELASTIC:
@@ -33,7 +33,7 @@ def _area_ratio(par, Q):
     return (0.05 * log_Q - 0.57) * log_Q + 2.41
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     square, strain = truncated(par, depth)
     Q = par[_Q] * strain
@@ -43,18 +43,18 @@ def _loading(par, depth):
     return math.pi * square / _area_ratio(par, Q) * pressure * par[S]
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     square, strain = truncated(par, depth)
     return math.sqrt(square / _area_ratio(par, par[_Q] * strain))
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return to_weaker(par, jackson(peak / par[ONSET]) * peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

@@ -12,14 +12,7 @@ from __future__ import annotations
 import math
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
-from ..kernel import (
-    Common,
-    R,
-    branch_kernel,
-    hertz_force,
-    loading_kernel,
-    residual_kernel,
-)
+from ..kernel import Common, R, hertz_force, kernel
 from .residual import YIELD, bounded_crater, recover
 
 _HARDNESS, _FIRST, _SPAN = 2.8, 0.4, 54.0  # H/S, k, w_2/w_1
@@ -32,14 +25,14 @@ def _numbers(common: Common) -> tuple[float, float]:
     return common.R * slope * slope, hardness
 
 
-@loading_kernel
+@kernel
 def _spread(par, depth):
     """Area over pi R depth: 1 to 2."""
     x = min((depth / par[YIELD] - 1.0) / (_SPAN - 1.0), 1.0)
     return 1.0 + x * x * (3.0 - 2.0 * x)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     if depth <= par[YIELD]:
         return hertz_force(par, depth)
@@ -49,19 +42,19 @@ def _loading(par, depth):
     return math.pi * par[R] * depth * _spread(par, depth) * pressure
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, peak):
     if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     return math.sqrt(par[R] * depth * _spread(par, depth))
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     return bounded_crater(_loading, _radius, par, peak)
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
 

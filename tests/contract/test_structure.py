@@ -169,7 +169,7 @@ def typed(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 def compiled(module: ast.Module) -> set[str]:
     """Names of the functions that numba compiles: decorated, or handed to a decorator."""
     makers = {"njit", "register_jitable", "vectorize", "guvectorize", "overload", "cfunc"}
-    makers |= {"loading_kernel", "branch_kernel", "residual_kernel"}
+    makers |= {"kernel", "loading_kernel", "branch_kernel", "residual_kernel"}
 
     def makes(node: ast.expr) -> bool:
         while isinstance(node, ast.Call):

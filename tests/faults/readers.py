@@ -234,7 +234,7 @@ def _read_law(path):
     law = law_named(str(path))
     pair = law.tables[0].pair
     depth = law.tables[0].curve.depth
-    assert np.isfinite(law.tables[0].numbers()).all(), "NaN"
+    assert np.isfinite(law.tables[0].numbers).all(), "NaN"
     assert np.isfinite(law.share(pair, depth * pair.R)).all(), "NaN"
 
 

@@ -9,7 +9,7 @@ from dentscope.core import Material
 from dentscope.dynamics import Approach, Friction, Settings, Striker, scene_of, strike
 from dentscope.dynamics.inverse import alpha, mobility
 from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
-from dentscope.models.kernel import E, R, S, branch_kernel, loading_kernel, residual_kernel
+from dentscope.models.kernel import E, R, S, kernel
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 
@@ -18,22 +18,22 @@ IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 TIGHT = Settings(tolerance=1e-11)
 
 
-@loading_kernel
+@kernel
 def pressing(par, depth):
     return 2.0 * math.pi * par[R] * 2.8 * par[S] * depth
 
 
-@branch_kernel
+@kernel
 def spread(par, depth, peak):
     return math.sqrt(2.0 * par[R] * depth)
 
 
-@residual_kernel
+@kernel
 def left(par, peak):
     return 0.0, peak - 0.75 * pressing(par, peak) / (par[E] * spread(par, peak, peak))
 
 
-@branch_kernel
+@kernel
 def releasing(par, depth, peak):
     rest = left(par, peak)[1]
     x = (depth - rest) / (peak - rest)
