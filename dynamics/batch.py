@@ -276,18 +276,10 @@ def _of_mass(scene: Scene, mass: float) -> Scene:
     striker, modes = scene.striker, scene.modes
     share = mass / striker.mass
     other = replace(striker, mass=mass, inertia=striker.inertia * share)
-    if share == 1.0 or not modes.frequencies:
-        return scene.with_(striker=other)
-    ring = replace(
-        modes, axial=_scaled(modes.axial, share), transverse=_scaled(modes.transverse, share),
-        rotation=_scaled(modes.rotation, share),
-    )  # fmt: skip
-    return scene.with_(striker=other, modes=ring)
-
-
-def _scaled(shape: tuple[float, ...], share: float) -> tuple[float, ...]:
-    """A mass-normalised shape of a rod `share` times as heavy."""
-    return tuple(x / math.sqrt(share) for x in shape)
+    if share != 1.0:
+        # the shapes are mass-normalised
+        modes = modes.scaled(lambda x: x / math.sqrt(share))
+    return scene.with_(striker=other, modes=modes)
 
 
 def _friction(stated: Friction, mu: float) -> Friction:

@@ -7,8 +7,9 @@ Legendre polynomials, which meets the free ends naturally and converges exponent
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -50,6 +51,13 @@ class Modes:
         x = along * math.cos(angle) - across * math.sin(angle)
         y = along * math.sin(angle) + across * math.cos(angle)
         return np.stack([x + turn * tip_radius, y, x])
+
+    def scaled(self, by: Callable[[float], float]) -> Modes:
+        """Return the modes with another displacement of the struck end, by the one it has."""
+        axial, transverse, rotation = (
+            tuple(map(by, shape)) for shape in (self.axial, self.transverse, self.rotation)
+        )
+        return replace(self, axial=axial, transverse=transverse, rotation=rotation)
 
 
 def axial_frequencies(length: float, material: Material, *, count: int) -> Array:
@@ -115,6 +123,7 @@ def _polynomials(degree: int) -> tuple[Array, Array, Array, Array]:
     return weight, value, slope, legendre.legvander(np.array([-1.0]), degree)[0]
 
 
+@lru_cache(maxsize=256)
 def rod_modes(
     length: float,
     radius: float,
@@ -154,5 +163,5 @@ def rod_modes(
         ]
     )
     table = table[:, np.argsort(table[0], kind="stable")[:count]]
-    columns = [tuple(float(item) for item in row) for row in table]
-    return Modes(columns[0], columns[1], columns[2], columns[3], loss_factor)
+    omega, along, across, turn = (tuple(row.tolist()) for row in table)
+    return Modes(omega, along, across, turn, loss_factor)

@@ -23,28 +23,21 @@ _LN2 = (6.93147180369123816490e-1, 1.90821492927058770002e-10)
 # fmt: on
 
 
-def _bits_of(_typing: Any, _number: Any) -> Any:
-    """Return a number's bits as an integer, which grows with the number."""
+def _seen_as(kind: Any, given: Any) -> Any:
+    """Return a compiled function that takes the bits of `given` for those of another kind."""
 
-    def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(types.int64))
+    def seen(_typing: Any, _number: Any) -> Any:
+        def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+            return builder.bitcast(arguments[0], context.get_value_type(kind))
 
-    return types.int64(types.float64), code
+        return kind(given), code
 
-
-bits_of = intrinsic(_bits_of)
-
-
-def _number_from(_typing: Any, _bits: Any) -> Any:
-    """Return the number that has these bits."""
-
-    def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(types.float64))
-
-    return types.float64(types.int64), code
+    return intrinsic(seen)
 
 
-_number_of = intrinsic(_number_from)
+bits_of = _seen_as(types.int64, types.float64)
+"""A number's bits as an integer, which grows with the number."""
+_number_of = _seen_as(types.float64, types.int64)
 
 
 @njit(**_INLINE)

@@ -53,20 +53,19 @@ class Impacts:
             yield dict(zip(self.columns, values, strict=True))
 
     def _shown(self) -> list[list[str]]:
-        columns = [self.columns[k] for k in _SHOWN if k in self.columns]
-        return [
-            [f"{x:.4g}" if isinstance(x, float) else str(x) for x in row]
-            for row in zip(*(c[:_ROWS_SHOWN].tolist() for c in columns), strict=True)
-        ]
+        """Names and first rows of the columns that are shown."""
+        shown = {k: self.columns[k][:_ROWS_SHOWN].tolist() for k in _SHOWN if k in self.columns}
+        rows = zip(*shown.values(), strict=True)
+        cells = ([f"{x:.4g}" if isinstance(x, float) else str(x) for x in row] for row in rows)
+        return [list(shown), *cells]
 
     def __repr__(self) -> str:
-        head = [k for k in _SHOWN if k in self.columns]
         told = f"{len(self)} impacts, {len(self.columns)} columns"
-        return f"{told}\n{text_table([head, *self._shown()], numbers=True)}"
+        return f"{told}\n{text_table(self._shown(), numbers=True)}"
 
     def _repr_html_(self) -> str:
-        head = [k for k in _SHOWN if k in self.columns]
-        return html_table(head, self._shown(), title=f"{len(self)} impacts")
+        head, *rows = self._shown()
+        return html_table(head, rows, title=f"{len(self)} impacts")
 
     def joined(self, other: Impacts) -> Impacts:
         """Return these rows and those of `other`, which has the same columns."""

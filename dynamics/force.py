@@ -8,16 +8,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import float64, njit, types
 
-from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from ..models.kernel import BRANCH, LOADING, SPLIT, VECTOR, cubic
 from .bits import power
 from .rules import RULES
-
-LOADING = types.FunctionType(LOADING_SIGNATURE)
-BRANCH = types.FunctionType(BRANCH_SIGNATURE)
-SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 
 # Places in the vector that describes the modified force.
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
@@ -54,9 +49,7 @@ def factor(factors, column, x):
     here, there = factors[first + i], factors[first + i + 1]
     before = factors[first + i - 1] if i > 0 else 2.0 * here - there
     after = factors[first + i + 2] if i + 2 <= last else 2.0 * there - here
-    m0, m1 = 0.5 * (there - before), 0.5 * (after - here)
-    rise = there - here
-    return here + t * (m0 + t * (3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)))
+    return cubic(t, here, there, 0.5 * (there - before), 0.5 * (after - here))
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -191,11 +184,8 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
         elastic = cut_force(b, force[RADIUS], force[MODULUS], peak)
         if elastic <= loading(par, law_peak):
             branch[1], branch[2] = 0.0, 0.0
-            branch[CUT_FLAT], branch[CUT_RADIUS], branch[CUT_MODULUS] = (
-                b,
-                force[RADIUS],
-                force[MODULUS],
-            )
+            branch[CUT_FLAT] = b
+            branch[CUT_RADIUS], branch[CUT_MODULUS] = force[RADIUS], force[MODULUS]
             branch[3] = force[RETURN] * static_loading(loading, par, force, factors, peak) / elastic
 
 
@@ -251,12 +241,3 @@ def edge_depth(radius, par, force, factors, limit):
         if high - low <= 1e-15 * high:
             break
     return 0.5 * (low + high)
-
-
-def neutral_force(radius: float, modulus: float) -> np.ndarray:
-    """Return the force vector of an unmodified law."""
-    force = np.zeros(N_FORCE)
-    force[RADIUS], force[MODULUS] = radius, modulus
-    force[EDGE] = force[EDGE_DEPTH] = force[EDGE_LIMIT] = math.inf
-    force[RETURN] = 1.0
-    return force

@@ -23,7 +23,6 @@ from .walk import layout as c
 # limit: rows of a history beside those asked for [-]: memory of a long vibration
 _HISTORY_ROWS = 4000
 
-_UNWRITTEN = np.zeros((0, len(c.HISTORY)))
 _STILL = np.empty((3, 0))
 _FRESH = Spot().row()
 _FRESH.flags.writeable = False
@@ -46,26 +45,14 @@ class Settings:
     flight: float = math.nan
 
 
-@dataclass(frozen=True, slots=True)
-class Arrays:
-    """The vectors of one scene, as the integrators take them."""
-
-    par: Array
-    force: Array
-    factors: Array
-    body: Array
-    surface: Array
-    omega: Array
-    psi: Array
-
-
-def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
+def arrays_of(scene: Scene, settings: Settings = Settings()) -> c.Given:
     """Return the vectors of a scene; the flow-stress seam is applied here."""
-    law, striker, approach = scene.law, scene.striker, scene.approach
-    pair = scene.pair
+    law, pair, striker, approach = scene.law, scene.pair, scene.striker, scene.approach
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
-    force = fo.neutral_force(pair.R, pair.E_reduced)
+    force = np.zeros(fo.N_FORCE)
+    force[fo.RADIUS], force[fo.MODULUS] = pair.R, pair.E_reduced
     force[fo.FLAT] = striker.tip_flat_radius
+    force[fo.EDGE] = force[fo.EDGE_DEPTH] = force[fo.EDGE_LIMIT] = math.inf
     force[fo.SHAPE], force[fo.RETURN] = scene.force.shape, scene.force.given_back
     force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
     factors = _factors(scene)
@@ -105,7 +92,7 @@ def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
     body[c.SCAN_LEVEL] = scene.instrument.scan_height
     body[c.LONGEST] = math.inf
     surface = _FRESH if scene.spot == Spot() else scene.spot.row()
-    return Arrays(par, force, factors, body, surface, omega, psi)
+    return c.Given(par, force, factors, body, surface, omega, psi)
 
 
 def _factors(scene: Scene) -> Array:
@@ -137,10 +124,10 @@ def strike(scene: Scene, settings: Settings = Settings()) -> Impact:
 
 def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> list[Impact]:
     """Integrate scenes that may differ in everything; each gives what `strike` gives."""
-    return [_struck(scene, arrays_of(scene, settings), _UNWRITTEN)[0] for scene in scenes]
+    return [_struck(scene, arrays_of(scene, settings))[0] for scene in scenes]
 
 
-def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
+def _struck(scene: Scene, a: c.Given, history: Array | None = None) -> tuple[Impact, int]:
     """Integrate one impact; return it and how many rows of `history` were filled."""
     out, left = np.zeros((1, c.N_OUT)), np.zeros((1, len(a.surface)))
     rows = _walked(scene.law, _given([a]), out, left=left, history=history)
@@ -148,7 +135,7 @@ def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
     return impact_of(out[0], left[0]), rows
 
 
-def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
+def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array | None) -> int:
     """Integrate the rows of `given` into those of `out`, as `many_impacts` does.
 
     A turned law walks as it was made: its sphere, the smaller one, takes its dent along as it
@@ -164,16 +151,15 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
     return rows
 
 
-def _given(rows: Sequence[Arrays]) -> c.Given:
+def _given(rows: Sequence[c.Given]) -> c.Given:
     """Return scenes of one law as the compiled integrator takes them.
 
-    Factors and modes have to be of one length.
+    Factors and modes have to be of one length; fresh metal is one row for all.
     """
-    columns = {key: [getattr(a, key) for a in rows] for key in c.Given._fields}
-    # fresh metal is one row for all
-    fresh = all(surface is _FRESH for surface in columns["surface"])
-    columns["surface"] = [_FRESH] if fresh else columns["surface"]
-    return c.Given(**{key: np.stack(one) for key, one in columns.items()})
+    columns = c.Given(*zip(*rows, strict=True))
+    if all(surface is _FRESH for surface in columns.surface):
+        columns = columns._replace(surface=[_FRESH])
+    return c.Given(*map(np.stack, columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,9 +184,8 @@ def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) 
     remembered surface (negative while it is pressed in), `place_m` the tip's centre along the flat.
     """
     a = arrays_of(scene, settings)
-    first, _ = _struck(scene, a, _UNWRITTEN)
+    first, _ = _struck(scene, a)
     span = first.touching_time_s if first.contacts == 1 else first.loading_time_s
-    a = arrays_of(scene, settings)
     if span > 0.0:
         a.body[c.LONGEST] = span / max(points, 1)
         a.body[c.MAX_STEPS] += 100.0 * points

@@ -14,7 +14,7 @@ import numpy as np
 from numba import float64, njit, types
 
 from ..core.arrays import Array
-from ..models.kernel import VECTOR
+from ..models.kernel import BRANCH, LOADING, SPLIT, VECTOR
 from . import force as fo
 from .integrate import Settings, arrays_of
 from .scene import Scene
@@ -74,9 +74,7 @@ _MATRIX = types.Array(float64, 2, "C")
 
 
 @njit(
-    types.void(
-        fo.LOADING, fo.BRANCH, fo.BRANCH, fo.SPLIT, *3 * (_MATRIX,), VECTOR, VECTOR, _MATRIX
-    ),
+    types.void(LOADING, BRANCH, BRANCH, SPLIT, *3 * (_MATRIX,), VECTOR, VECTOR, _MATRIX),
     cache=True, _nrt=False, error_model="numpy",
 )  # fmt: skip
 def _press(loading, radius, unloading, residual, par, force, factors, load, branch, out):
@@ -89,7 +87,7 @@ def _press(loading, radius, unloading, residual, par, force, factors, load, bran
 
 
 @njit(
-    types.void(fo.BRANCH, *3 * (_MATRIX,), VECTOR, VECTOR),
+    types.void(BRANCH, *3 * (_MATRIX,), VECTOR, VECTOR),
     cache=True, _nrt=False, error_model="numpy",
 )  # fmt: skip
 def _radii(radius, par, force, factors, depth, out):

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -20,8 +20,9 @@ from numba import njit
 from scipy.interpolate import PchipInterpolator
 
 from ..core.arrays import Array
-from ..core.material import Material, Pair
+from ..core.material import Pair
 from ..models.base import ContactLaw, DomainWarning, remembering
+from ..models.kernel import cubic
 from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from .rules import RULES
 
@@ -51,9 +52,7 @@ def _factors(strength, levels, logs, slopes):  # type: ignore[no-untyped-def]
         for column in range(columns):
             low, high = logs[column, i, k], logs[column, i + 1, k]
             m0, m1 = wide * slopes[column, i, k], wide * slopes[column, i + 1, k]
-            rise = high - low
-            bend = 3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)
-            out[column, k] = math.exp(low + t * (m0 + t * bend))
+            out[column, k] = math.exp(cubic(t, low, high, m0, m1))
     return out
 
 
@@ -163,9 +162,8 @@ def strength_table(law: ContactLaw, pair: Pair) -> StrengthTable:
 
 def _logs(law: ContactLaw, pairs: Sequence[Pair], depth: Array) -> Logs:
     grid = np.tile(depth, (len(pairs), 1))
-    with warnings.catch_warnings():
-        # the table's ends reach beyond what an impact will ask for
-        warnings.simplefilter("ignore", DomainWarning)
+    # the table's ends reach beyond what an impact will ask for
+    with warnings.catch_warnings(action="ignore", category=DomainWarning):
         force = law.loading(pairs, grid)
     sphere, flat = law.residual(pairs, grid)
     rest = sphere + flat
@@ -192,8 +190,4 @@ def _log_radius(depth: Array, radius: Array) -> Array:
 
 def stronger(pair: Pair, factor: float) -> Pair:
     """Return the pair with strengths times a factor; what is rigid stays so."""
-
-    def body(plain: Material) -> Material:
-        return plain if plain.rigid else plain.strengthened(factor)
-
-    return replace(pair, sphere=body(pair.sphere), flat=body(pair.flat))
+    return Pair(pair.sphere.strengthened(factor), pair.flat.strengthened(factor), pair.R)

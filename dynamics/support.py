@@ -39,15 +39,6 @@ def rod_support(material: Material, *, radius: float) -> Support:
     return Support(plate_mobility=1.0 / (math.sqrt(material.E * material.density) * area))
 
 
-def sprung_support(mass: float, stiffness: float, *, damping: float = 0.0) -> Support:
-    """A flat of `mass` [kg] on a spring [N/m] and a dashpot [N s/m]."""
-    if not mass > 0.0:
-        raise InputError(f"{mass:g}", key="support_mass_kg", allowed="a number above 0")
-    if not stiffness >= 0.0:
-        raise InputError(f"{stiffness:g}", key="support_stiffness_N_m", allowed="0 or more")
-    return Support(mass=mass, stiffness=stiffness, damping=damping)
-
-
 def half_space_radiation(material: Material) -> float:
     """Kappa [m s/N]: a force F(t) on a half-space radiates the power kappa F'(t)^2.
 

@@ -249,12 +249,8 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
             struck = strike(scene, setup.settings)
             found = setup.read(law, struck)
             pressure = largest_mean_pressure(scene, struck) if found.peak_depth_m > 0.0 else 0.0
-            rows.append(
-                {
-                    "law": law.name, "repeat": number, **impact_row(found),
-                    PRESSURE: pressure,
-                }
-            )  # fmt: skip
+            one = {"law": law.name, "repeat": number}
+            rows.append({**one, **impact_row(found), PRESSURE: pressure})
             history = traced(scene, setup.settings, points=_HISTORY_POINTS)
             traces[law.name] = replace(history, impact=setup.read(law, history.impact))
             # the next blow falls on the same spot: hardened crater, flattened tip
@@ -271,15 +267,12 @@ def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
     largest = {"mJ": max((one.kinetic_before_J for one in impacts), default=0.0)}
     for _, key, _, unit in SHOWN if columns else ():
         largest[unit] = max([largest.get(unit, 0.0), *(abs(values[key]) for values in columns)])
-    return [
-        {
-            key: 0.0
-            if key not in EXACT and abs(values[key]) <= _least(key, largest[unit])
-            else values[key]
-            for _, key, _, unit in SHOWN
-        }
-        for values in columns
-    ]
+
+    def shown(key: str, unit: str, value: float) -> float:
+        least = max(_SHOWN_ROUND_OFF * largest[unit], ATOM if key in _LEFT else 0.0)
+        return 0.0 if key not in EXACT and abs(value) <= least else value
+
+    return [{key: shown(key, unit, one[key]) for _, key, _, unit in SHOWN} for one in columns]
 
 
 def _reach(key: str, found: Impact) -> tuple[float, float]:
@@ -296,11 +289,6 @@ def _reach(key: str, found: Impact) -> tuple[float, float]:
     elif key == "rebound_speed_m_s" and found.restitution > 0.0:
         most = value / found.restitution
     return max(most - value, 0.0), value
-
-
-def _least(key: str, largest: float) -> float:
-    """Size up to which a number is shown as 0, by the largest of its unit."""
-    return max(_SHOWN_ROUND_OFF * largest, ATOM if key in _LEFT else 0.0)
 
 
 def _cell(

@@ -21,25 +21,20 @@ def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, St
 
     A body without a modulus or Poisson's ratio is refused.
     """
-    body = rig.material(f"strikers.{name}", source=source)
-    flat, striker = rig.material("target", source=source), striker_of(rig, name)
+    of, key = rig.of, f"strikers.{name}"
+    body, flat = (rig.material(table, source=source) for table in (key, "target"))
     if body.rigid and flat.rigid:
         raise InputError(
             "given beside a rigid striker", source=source, key="target.rigid",
             allowed="at most one rigid body",
         )  # fmt: skip
-    return Pair(body, flat, striker.tip_radius), striker
-
-
-def striker_of(rig: RigNumbers, name: str) -> Striker:
-    """Return the rigid body of a striker."""
-    of, key = rig.of, f"strikers.{name}"
-    return Striker(
+    striker = Striker(
         mass=of[f"{key}.mass_kg"], tip_radius=of[f"{key}.tip_radius_m"],
         length=of[f"{key}.length_m"], radius=of[f"{key}.radius_m"],
         inertia=of[f"{key}.inertia_kg_m2"], tip_flat_radius=of.get(f"{key}.tip_flat_radius_m", 0.0),
         name=name,
     )  # fmt: skip
+    return Pair(body, flat, striker.tip_radius), striker
 
 
 def flowing(metal: Material, table: BodyTable, key: str, *, source: str) -> Material:

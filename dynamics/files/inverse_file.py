@@ -117,15 +117,9 @@ def read_inverse(path: Path) -> list[InverseRow]:
             inferred = infer(rod, measured)
         except InputError as error:
             key = {"friction": "friction_impulse_ratio"}.get(error.key, error.key)
-            raise InputError(
-                error.message, source=source, key=f"trial.{i - 1}.{key}", allowed=error.allowed
-            ) from None
-        rows.append(
-            InverseRow(
-                trial.trial or str(i), measured, inferred,
-                _deviations(found.striker, measured),
-            )
-        )  # fmt: skip
+            raise error.at(source, f"trial.{i - 1}.{key}") from None
+        std = _deviations(found.striker, measured)
+        rows.append(InverseRow(trial.trial or str(i), measured, inferred, std))
     return rows
 
 

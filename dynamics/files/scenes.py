@@ -13,7 +13,7 @@ from ...core.inputs.rig_numbers import RigNumbers
 from ...models.base import ContactLaw
 from ..beam import rod_modes
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
-from ..support import half_space_radiation, plate_support, rod_support, sprung_support
+from ..support import half_space_radiation, plate_support, rod_support
 from .bodies import bodies_of, flowing
 from .second import second_of
 
@@ -50,9 +50,9 @@ def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: 
         )  # fmt: skip
     support, radiation = Support(), 0.0
     if impact.support == "sprung":
-        support = sprung_support(
+        support = Support(
             of["target.support_mass_kg"], of.get("target.support_stiffness_N_m", 0.0),
-            damping=impact.support_damping_N_s_m,
+            impact.support_damping_N_s_m,
         )  # fmt: skip
     elif impact.support == "plate":
         support = plate_support(pair.flat, thickness=of["target.thickness_m"])
@@ -67,9 +67,7 @@ def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: 
             loss_factor=impact.loss_factor,
         )  # fmt: skip
     except InputError as error:
-        raise InputError(
-            error.message, source=source, key="impact.modes", allowed=error.allowed
-        ) from None
+        raise error.at(source, "impact.modes") from None
     scene = Scene(
         law, pair, striker, _approach(impact, of, rod=rod),
         gravity=of["gravity_m_s2"], friction=Friction(of.get("friction.coefficient", 0.0)),
@@ -79,9 +77,7 @@ def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: 
     try:
         return scene if second is None else second.facing(scene)
     except InputError as error:
-        raise InputError(
-            error.message, source=source, key=error.key, allowed=error.allowed
-        ) from None
+        raise error.at(source, error.key) from None
 
 
 def _approach(impact: ImpactTable, of: Mapping[str, float], *, rod: bool) -> Approach:

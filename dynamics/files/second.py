@@ -87,9 +87,8 @@ class SecondSphere(StruckSphere):
         depth = np.asarray(delta, dtype=float)
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(depth)
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=DomainWarning):
             # a rigid partner is beyond the strengths that were fitted
-            warnings.simplefilter("ignore", DomainWarning)
             _, as_flat = LAWS["fitted"].residual(pair, depth)
             as_sphere, _ = LAWS["fitted"].residual(pair.turned, depth)
         stays = (as_flat > 0.0) & (as_sphere > 0.0)
@@ -112,17 +111,10 @@ def mirror_error(pair: Pair, delta: float | Array) -> Array:
     """
     law, body = LAWS["fitted"], pair.weaker
     both = Pair(body, body, pair.R)
+    # one of two equal spheres, R being half of its radius, on what mirrors it: a rigid flat
+    half = Pair(body, body.with_(rigid=True), 2.0 * pair.R)
     # a film can leave no depth at all
     depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=DomainWarning):
         # a rigid partner is beyond the strengths that were fitted
-        warnings.simplefilter("ignore", DomainWarning)
-        return np.asarray(law.loading(mirrored(both), 0.5 * depth) / law.loading(both, depth) - 1.0)
-
-
-def mirrored(pair: Pair) -> Pair:
-    """Return the sphere on a rigid flat that is one half of two equal spheres.
-
-    R is that of both, half of one sphere's.
-    """
-    return Pair(pair.sphere, pair.flat.with_(rigid=True), 2.0 * pair.R)
+        return np.asarray(law.loading(half, 0.5 * depth) / law.loading(both, depth) - 1.0)

@@ -28,7 +28,7 @@ from ...core.rig import (
 )
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
-from ..batch import Change, unchanged
+from ..batch import Change, impacts, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
 from ..mechanisms.asked import Asked
@@ -38,7 +38,7 @@ from ..scene import Scene
 from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
 from .scenes import curves_in, scene_in
 from .second import SecondSphere, second_of
-from .sweep import Stated, SweepTable, mistakes_in, run_sweep, swept_scenes
+from .sweep import Stated, SweepTable, combinations, mistakes_in, swept_scenes
 from .taken import not_taken, taken_elsewhere
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
@@ -260,9 +260,8 @@ class Setup:
     def swept(self, law: ContactLaw, *, change: Change = unchanged) -> Impacts:
         """Return the impacts of `[sweep]` by one law, what is done to the force changed."""
         plain = self.plain(law)
-        found = run_sweep(
-            self.sweep, plain, self.settings, stated=self.stated, asked=self.asked, change=change
-        )
+        given = combinations(self.sweep, plain, stated=self.stated)
+        found = impacts(plain, **given, settings=self.settings, asked=self.asked, change=change)
         if self.second is None:
             return found
         columns = ("approach_spin_rad_s", "rebound_spin_rad_s")

@@ -14,10 +14,7 @@ from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model
 from ...core.rig import Friction, Height, Mass, Quantity, Speed
-from ..batch import Change, impacts, scenes_over, unchanged
-from ..columns import Impacts
-from ..integrate import Settings
-from ..mechanisms.asked import NONE_ASKED, Asked
+from ..batch import scenes_over
 from ..scene import Scene
 
 # limit: largest number of combinations [-]
@@ -57,13 +54,10 @@ def _spread(given: Any) -> Any:
         raise ValueError(_ALLOWED) from None
 
 
-def _all(accept: Any, allowed: str) -> AfterValidator:
-    def check(values: tuple[float, ...]) -> tuple[float, ...]:
-        if not all(accept(x) for x in values):
-            raise ValueError(f"each {allowed}")
-        return values
-
-    return AfterValidator(check)
+def _slanted(values: tuple[float, ...]) -> tuple[float, ...]:
+    if not all(0.0 < x <= 90.0 for x in values):
+        raise ValueError("each above 0 and up to 90")
+    return values
 
 
 def _as_one(kind: Any) -> AfterValidator:
@@ -88,7 +82,7 @@ class SweepTable(InputTable):
     """Speeds along the flat's normal."""
     drop_height_m: Annotated[_Values, _as_one(Height)] = ()
     """Heights of fall."""
-    angle_deg: Annotated[_Values, _all(lambda x: 0.0 < x <= 90.0, "above 0 and up to 90")] = ()
+    angle_deg: Annotated[_Values, AfterValidator(_slanted)] = ()
     """Angles, as in [impact]."""
     friction: Annotated[_Values, _as_one(Friction)] = ()
     """Coefficients of friction."""
@@ -112,24 +106,16 @@ class SweepTable(InputTable):
 
 def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
     """What the single keys cannot show."""
-    found = []
-    if sweep.impact_speed_m_s and sweep.drop_height_m:
-        found.append(
-            InputError(
-                "both speed and height", source=source, key="sweep",
-                allowed="impact_speed_m_s or drop_height_m",
-            )
-        )  # fmt: skip
-    if sweep.count > _COMBINATIONS:
-        found.append(
-            InputError(
-                f"{sweep.count} combinations",
-                source=source,
-                key="sweep",
-                allowed=f"up to {_COMBINATIONS}",
-            )
-        )
-    return found
+    both = sweep.impact_speed_m_s and sweep.drop_height_m
+    wrong = (
+        (both, "both speed and height", "impact_speed_m_s or drop_height_m"),
+        (sweep.count > _COMBINATIONS, f"{sweep.count} combinations", f"up to {_COMBINATIONS}"),
+    )
+    return [
+        InputError(message, source=source, key="sweep", allowed=allowed)
+        for amiss, message, allowed in wrong
+        if amiss
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,24 +131,18 @@ class Stated:
     gravity: float
 
 
-def run_sweep(
-    sweep: SweepTable, plain: Scene, settings: Settings, *, stated: Stated,
-    asked: Asked = NONE_ASKED, change: Change = unchanged,
-) -> Impacts:  # fmt: skip
-    """Simulate every combination of one condition or more; what is not swept is the scene's."""
-    given = _given(sweep, plain, stated)
-    return impacts(plain, **given, settings=settings, asked=asked, change=change)
-
-
 def swept_scenes(sweep: SweepTable, plain: Scene, *, stated: Stated) -> list[Scene]:
     """Return the scene, and that of every combination."""
     if not sweep.count:
         return [plain]
-    return [plain, *scenes_over(plain, **_given(sweep, plain, stated))]
+    return [plain, *scenes_over(plain, **combinations(sweep, plain, stated=stated))]
 
 
-def _given(sweep: SweepTable, scene: Scene, stated: Stated) -> dict[str, Any]:
-    """The arrays of `impacts`: each row arrives as a file with its numbers has it."""
+def combinations(sweep: SweepTable, scene: Scene, *, stated: Stated) -> dict[str, Any]:
+    """Return every combination as the arrays of `impacts`; what is not swept is the scene's.
+
+    Each row arrives as a file with its numbers has it.
+    """
     names = list(sweep.swept)
     grid = np.meshgrid(*sweep.swept.values(), indexing="ij")
     given: dict[str, Array] = {name: g.ravel() for name, g in zip(names, grid, strict=True)}

@@ -62,10 +62,10 @@ def _of_mechanisms(found: SetupFile, content: Mapping[str, Any], line: Any) -> I
     if found.impact.temperature_K is not None and _TEMPERATURE not in read:
         yield line(_TEMPERATURE, found.impact.temperature_K, _with_a_mechanism(_TEMPERATURE))
     known = found.striker in found.strikers
-    weaker = weaker_table(found, found.striker) if known else ""
+    weaker, stated = weaker_table(found, found.striker) if known else "", _tables(content)
     for key, body in found.bodies.items():
         for name in _OF_A_BODY:
-            if name not in _stated(content, key):
+            if name not in stated[key]:
                 continue
             if name not in read:
                 yield line(f"{key}.{name}", getattr(body, name), _with_a_mechanism(name))
@@ -115,28 +115,25 @@ def _of_the_striker(found: SetupFile, line: Any) -> Iterator[InputError]:
         yield line("impact.flight_s", impact.flight_s, f'{allowed}, or on a "sprung" support')
 
 
-def _stated(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    """What the file itself says in a body's table."""
-    found: Any = content
-    for part in key.split(".", 1):
-        found = found[part]
-    return dict(found)
+def _tables(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """What the file itself says of each body, as far as it is a table."""
+    strikers = content.get("strikers")
+    named = strikers if isinstance(strikers, dict) else {}
+    given = {"target": content.get("target"), **{f"strikers.{k}": t for k, t in named.items()}}
+    return {key: table for key, table in given.items() if isinstance(table, dict)}
 
 
 def taken_elsewhere(content: dict[str, Any], *, source: str) -> Iterator[InputError]:
     """Yield a line for what an impact has elsewhere, or has no equation for."""
-    strikers = content.get("strikers")
-    bodies = {"target": content.get("target")}
-    if isinstance(strikers, dict):
-        bodies |= {f"strikers.{name}": body for name, body in strikers.items()}
-    if isinstance(content.get("target"), dict) and content["target"].get("shape") == "rod":
+    bodies = _tables(content)
+    if bodies.get("target", {}).get("shape") == "rod":
         yield InputError(
             "'rod'", source=source, key="target.shape",
             allowed='"flat" or "sphere"; a rod struck on its end: impact.support = "rod"',
         )  # fmt: skip
     for key, body in bodies.items():
         for name, allowed in _OF_A_CASE.items():
-            if isinstance(body, dict) and name in body:
+            if name in body:
                 yield InputError(
                     "not known here", source=source, key=f"{key}.{name}", allowed=allowed
                 )

@@ -68,7 +68,6 @@ class Tilt(Mechanism):
             literature=Literature(5.0, "the tolerance that the thesis states"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {}
     form: ClassVar[float] = 0.05
     in_flight: ClassVar[bool] = True
 

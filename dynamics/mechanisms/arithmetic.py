@@ -97,13 +97,6 @@ def needs_yielding_law(situations: Sequence[Situation]) -> str:
     return ""
 
 
-def needs_sliding(situations: Sequence[Situation]) -> str:
-    """Return the reason against a mechanism of the tangential motion, or ""."""
-    if not any(is_oblique(scene) for scene, _ in situations):
-        return "every impact is normal: nothing slides"
-    return ""
-
-
 def slower(
     seen: Mapping[str, Array], restitution: Array, arrived: Array | float = 1.0
 ) -> dict[str, Array]:

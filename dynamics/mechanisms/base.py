@@ -118,49 +118,33 @@ Situation = tuple[Scene, Surroundings]
 class Mechanism(ABC):
     """One mechanism; subclasses are stateless and hold class attributes.
 
-    Attributes
-    ----------
-    name
-        As in the list of verdict names.
-    title
-        A few words for people.
-    equations
-        What is added to the baseline, in one or two lines.
-    parameters
-        Its free numbers. The first is the size of the effect: at its neutral value nothing happens,
-        whatever the others.
-    direction
-        Observable to the sign of its change: +1, -1.
-    form
-        How far published forms of this physics differ, as a share of its effect, when they are
-        fitted to each other over a decade of speed: 0.15 for constitutive laws (a power against a
-        logarithm or an exponential), less where the equations are those of rigid or elastic bodies.
-    law_error
-        How many times larger the contact law's own error is with this mechanism: above 1 where the
-        law is used for a contact that it was not made for.
-    scale_error
-        Standard deviation of the logarithm of what the first parameter multiplies, where that is
-        taken from the contact law and is none of the numbers whose error the law's own holds: a
-        contact radius. The parameter is known no better.
-    jumps
-        Whether the outcome jumps with the first parameter, because a tip may or may not touch
-        again.
-    named
-        Whether a verdict has a name for it. What has none counts as something outside the library,
-        and the report says that it behaves like this.
-    static
-        Whether it acts without motion, and so on a quasi-static press as well.
-    mutual
-        Whether what it takes of the approach goes to the struck body: of both it keeps the
-        momentum.
-    in_flight
-        Whether it acts before the touch: the others meet what it has left of the approach.
-    rests_on
-        Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
-        state one, the mechanism is not tried: its constants would be those of the assumption.
-    reads
-        Keys of a set-up, beyond those of the bodies' motion, that it takes numbers from: with a
-        table in front (`environment.pressure_Pa`), or of the bodies.
+    - `name`, `title`, `equations`: as in the list of verdict names; a few words for people; what is
+      added to the baseline, in one or two lines.
+    - `parameters`: its free numbers. The first is the size of the effect: at its neutral value
+      nothing happens, whatever the others.
+    - `direction`: observable to the sign of its change: +1, -1.
+    - `form`: how far published forms of this physics differ, as a share of its effect, when they
+      are fitted to each other over a decade of speed: 0.15 for constitutive laws (a power against a
+      logarithm or an exponential), less where the equations are those of rigid or elastic bodies.
+    - `law_error`: how many times larger the contact law's own error is with this mechanism: above 1
+      where the law is used for a contact that it was not made for.
+    - `scale_error`: standard deviation of the logarithm of what the first parameter multiplies,
+      where that is taken from the contact law and is none of the numbers whose error the law's own
+      holds: a contact radius. The parameter is known no better.
+    - `jumps`: whether the outcome jumps with the first parameter, because a tip may or may not
+      touch again.
+    - `named`: whether a verdict has a name for it. What has none counts as something outside the
+      library, and the report says that it behaves like this.
+    - `static`: whether it acts without motion, and so on a quasi-static press as well.
+    - `mutual`: whether what it takes of the approach goes to the struck body: of both it keeps the
+      momentum.
+    - `in_flight`: whether it acts before the touch: the others meet what it has left of the
+      approach.
+    - `rests_on`: bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set
+      does not state one, the mechanism is not tried: its constants would be those of the
+      assumption.
+    - `reads`: keys of a set-up, beyond those of the bodies' motion, that it takes numbers from:
+      with a table in front (`environment.pressure_Pa`), or of the bodies.
     """
 
     name: str
@@ -178,12 +162,6 @@ class Mechanism(ABC):
     in_flight: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()
     reads: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def literature(self) -> Values:
-        """Published values of all parameters; empty if one of them has none."""
-        known = {p.name: p.literature.value for p in self.parameters if p.literature}
-        return known if len(known) == len(self.parameters) else {}
 
     def acts_on(self, scene: Scene) -> bool:
         """Whether it can act in a scene at all: nothing that needs motion acts in a press."""

@@ -7,11 +7,21 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ..scene import Scene
-from .arithmetic import needs_sliding
+from .arithmetic import is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 
-class VelocityDependentFriction(Mechanism):
+class SlidingMechanism(Mechanism):
+    """A mechanism of the motion along the flat."""
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs sliding."""
+        if not any(is_oblique(scene) for scene, _ in situations):
+            return "every impact is normal: nothing slides"
+        return ""
+
+
+class VelocityDependentFriction(SlidingMechanism):
     """The friction coefficient depends on the sliding speed."""
 
     name = "velocity-dependent-friction"
@@ -35,11 +45,6 @@ class VelocityDependentFriction(Mechanism):
             literature=Literature(0.0, "the coefficient is that of sliding"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {}
-
-    def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs sliding."""
-        return needs_sliding(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""
@@ -51,7 +56,7 @@ class VelocityDependentFriction(Mechanism):
         return scene.with_(friction=friction)
 
 
-class PloughingFriction(Mechanism):
+class PloughingFriction(SlidingMechanism):
     """The tip pushes metal ahead of it."""
 
     name = "ploughing-friction"
@@ -65,10 +70,6 @@ class PloughingFriction(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"friction_impulse_ratio": 1, "sliding_length_m": -1}
-
-    def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs sliding."""
-        return needs_sliding(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

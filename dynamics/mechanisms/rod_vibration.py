@@ -48,7 +48,8 @@ class _Ringing(Mechanism):
         if striker.length == 0.0 or body.rigid:
             return scene
         modes = self.modes(striker, body.with_(density=density_of(body)))
-        return scene.with_(modes=_scaled(modes, values["modal_participation"]))
+        factor = math.sqrt(values["modal_participation"])
+        return scene.with_(modes=modes.scaled(lambda x: factor * x))
 
 
 class RodLongitudinalWaves(_Ringing):
@@ -78,8 +79,7 @@ class RodFlexuralVibration(_Ringing):
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod that leans."""
-        reason = super().applies(situations)
-        if reason:
+        if reason := super().applies(situations):
             return reason
         if not any(scene.striker.length > 0.0 and is_oblique(scene) for scene, _ in situations):
             return "every rod stands upright: a central blow along the axis does not bend it"
@@ -100,7 +100,10 @@ class RodFlexuralVibration(_Ringing):
 
     def modes(self, striker: Striker, body: Material) -> Modes:
         """Return the lowest axial and bending modes."""
-        return _all_modes(striker.length, striker.radius, body, striker.mass)
+        return rod_modes(
+            striker.length, striker.radius, body, mass=striker.mass, count=RULES.bending_modes,
+            loss_factor=RULES.rod_loss,
+        )  # fmt: skip
 
 
 @lru_cache(maxsize=256)
@@ -110,20 +113,3 @@ def axial_modes(length: float, material: Material, mass: float) -> Modes:
     ends = tuple([math.sqrt(2.0 / mass)] * RULES.axial_modes)
     none = (0.0,) * RULES.axial_modes
     return Modes(tuple(float(w) for w in omega), ends, none, none, RULES.rod_loss)
-
-
-@lru_cache(maxsize=256)
-def _all_modes(length: float, radius: float, material: Material, mass: float) -> Modes:
-    return rod_modes(
-        length, radius, material, mass=mass, count=RULES.bending_modes, loss_factor=RULES.rod_loss
-    )
-
-
-def _scaled(modes: Modes, share: float) -> Modes:
-    factor = math.sqrt(share)
-    return replace(
-        modes,
-        axial=tuple(factor * x for x in modes.axial),
-        transverse=tuple(factor * x for x in modes.transverse),
-        rotation=tuple(factor * x for x in modes.rotation),
-    )

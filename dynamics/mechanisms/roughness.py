@@ -57,10 +57,7 @@ class Layer:
         rough_back = np.minimum(np.exp(at_nodes(np.log(back))), depth)
         stays = np.maximum(at_nodes(depth - recovered + kept * sigma * turns), 0.0)
         rest = np.maximum(depth - rough_back, 1e-3 * depth)
-        return cls(
-            np.exp(at_nodes(np.log(force))) / force, rough_back / recovered,
-            stays / rest,
-        )  # fmt: skip
+        return cls(np.exp(at_nodes(np.log(force))) / force, rough_back / recovered, stays / rest)
 
 
 class Roughness(Mechanism):

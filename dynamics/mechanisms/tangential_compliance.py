@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
 from ..scene import Scene
-from .arithmetic import is_oblique, needs_sliding
-from .base import Mechanism, Parameter, Situation, Surroundings, Values
+from .arithmetic import is_oblique
+from .base import Parameter, Surroundings, Values
+from .friction import SlidingMechanism
 
 
-class TangentialCompliance(Mechanism):
+class TangentialCompliance(SlidingMechanism):
     """The contact gives way sideways before it slides (Mindlin; Maw, Barber and Fawcett)."""
 
     name = "tangential-compliance"
@@ -26,15 +26,10 @@ class TangentialCompliance(Mechanism):
             "2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=5,
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {}
     # of the radius a: at one depth a^2/(2 R delta) falls from 1.43 without hardening to 1.15 at an
     # exponent of 0.2 (Biwa and Storakers, J. Mech. Phys. Solids 43 (1995) 1303): 10 % in a
     scale_error: ClassVar[float] = 0.05
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
-
-    def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs sliding."""
-        return needs_sliding(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

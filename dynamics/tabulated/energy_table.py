@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from functools import lru_cache
 
 import numpy as np
 from numba import float64, njit, types
@@ -18,7 +18,7 @@ from ...core.arrays import Array
 from ...core.material import Pair
 from ...fem.rules import RULES as FEM
 from ...models.base import ContactLaw, Kernels
-from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from ...models.kernel import BRANCH, LOADING, SPLIT, VECTOR
 from ..rules import RULES
 from .cells import TableCells, cells_of
 from .law_table import TABLES_KEPT
@@ -39,24 +39,14 @@ TERMS = 5
 RECOVERY_TIME = LOADING_TIME + TERMS
 COLUMNS = RECOVERY_TIME + TERMS
 
-_LAW = types.FunctionType(LOADING_SIGNATURE)
-_BRANCH = types.FunctionType(BRANCH_SIGNATURE)
-_SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
-_TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
-
 
 def energy_table(law: ContactLaw, pair: Pair) -> TableCells:
     """Return the pair's table over ln W, made at its first use and kept.
 
     It ends early where the law does: where its force jumps or falls without bound, or is no number.
     """
-    par = np.ascontiguousarray(law.parameters(pair), dtype=float)
-    key = (law.name, law.kernels.residual, par.tobytes())
-    if key not in _TABLES:
-        if len(_TABLES) >= TABLES_KEPT:
-            _TABLES.clear()
-        _TABLES[key] = _table(law.kernels, par, pair.R)
-    return _TABLES[key]
+    numbers = np.asarray(law.parameters(pair), dtype=float).tobytes()
+    return _table(law.kernels, numbers, pair.R)
 
 
 _PANEL, _WEIGHT = (0.5 * x for x in np.polynomial.legendre.leggauss(8))
@@ -88,8 +78,9 @@ _X, _LEFT, _SLOPE, _TO_PEAK = _recovery_rule(32)
 _WHOLE = 0.5 * np.polynomial.legendre.leggauss(32)[1]
 
 
-def _table(kernels: Kernels, par: Array, R: float) -> TableCells:
-    loading = kernels.loading
+@lru_cache(maxsize=TABLES_KEPT)
+def _table(kernels: Kernels, numbers: bytes, R: float) -> TableCells:
+    loading, par = kernels.loading, np.frombuffer(bytearray(numbers))
     low, high = math.log(0.1 * SHALLOWEST * R), math.log(2.0 * DEEPEST * R)
 
     def log_force(x: Array) -> Array:
@@ -124,7 +115,7 @@ def _table(kernels: Kernels, par: Array, R: float) -> TableCells:
     )
 
 
-@njit(types.void(_LAW, VECTOR, VECTOR, float64[:, ::1]), cache=True, _nrt=False,
+@njit(types.void(LOADING, VECTOR, VECTOR, float64[:, ::1]), cache=True, _nrt=False,
       error_model="numpy")  # fmt: skip
 def _log_forces(loading, par, x, out):
     for i in range(len(x)):
@@ -207,7 +198,7 @@ def _recovery(unloading, par, peak, way, work, row):
 
 
 @njit(
-    types.void(_LAW, _BRANCH, _SPLIT, VECTOR, VECTOR, float64[:, ::1], VECTOR, float64, VECTOR,
+    types.void(LOADING, BRANCH, SPLIT, VECTOR, VECTOR, float64[:, ::1], VECTOR, float64, VECTOR,
                float64[:, ::1]),
     cache=True, error_model="numpy",
 )  # fmt: skip

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
 
 import numpy as np
 from numba import int64, njit, types
@@ -24,15 +24,14 @@ from ...core.material import Pair
 from ...models.base import ContactLaw, Kernels
 from ...models.driver import Depths, Pairs
 from ...models.kernel import (
-    BRANCH_SIGNATURE,
-    LOADING_SIGNATURE,
+    BRANCH,
+    LOADING,
     N_COMMON,
-    RESIDUAL_SIGNATURE,
+    SPLIT,
     VECTOR,
-    branch_kernel,
     common_parameters,
-    loading_kernel,
-    residual_kernel,
+    kernel,
+    power_recovery,
 )
 from ..bits import bits_of
 from ..rules import RULES
@@ -49,7 +48,6 @@ SHALLOWEST, DEEPEST = 1e-9, 1.0
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
-_TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
 _TABLE = N_COMMON + 2
@@ -77,34 +75,28 @@ def _column(par, column, depth):
     return column_in(par, _TABLE, cell, column, x)
 
 
-@loading_kernel
+@kernel
 def _loading(par, depth):
     return depth * math.sqrt(depth) * _column(par, _FORCE, depth)
 
 
-@branch_kernel
+@kernel
 def _radius(par, depth, _peak):
     return math.sqrt(depth) * _column(par, _RADIUS, depth)
 
 
-@residual_kernel
+@kernel
 def _residual(par, peak):
     cell, x = _found(par, peak)
     sphere = column_in(par, _TABLE, cell, _SPHERE, x)
     return max(sphere, 0.0) * peak, max(column_in(par, _TABLE, cell, _FLAT, x), 0.0) * peak
 
 
-@branch_kernel
+@kernel
 def _unloading(par, depth, peak):
     sphere, flat = _residual(par, peak)
-    rest = sphere + flat
-    if depth <= rest or peak <= rest:
-        return 0.0
-    force = _loading(par, peak)
-    if depth >= peak:
-        return force
     exponent = _column(par, _EXPONENT, peak)
-    return force * ((depth - rest) / (peak - rest)) ** exponent
+    return power_recovery(_loading(par, peak), depth, peak, sphere + flat, exponent)
 
 
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
@@ -127,7 +119,8 @@ class TabulatedLaw(ContactLaw):
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, begin and length of the range, then the table, shape (n,)."""
-        head = [float(_bits(_first_octave(pair.R))), float(_octaves(pair.R))]
+        bits = np.float64(_first_octave(pair.R)).view(np.int64)
+        head = [float(bits), float(_octaves(pair.R))]
         return np.concatenate([common_parameters(pair), head, self.table(pair).vector])
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
@@ -136,16 +129,11 @@ class TabulatedLaw(ContactLaw):
 
     def table(self, pair: Pair) -> TableCells:
         """Return the pair's table; refuse a law that recovers otherwise, jumps or oscillates."""
-        par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
-        key = (self.law.name, self.law.kernels.residual, par.tobytes())
-        if key not in _TABLES:
-            if len(_TABLES) >= TABLES_KEPT:
-                _TABLES.clear()
-            _TABLES[key] = _table(self.law, par, pair.R)
-        found = _TABLES[key]
+        name, par = self.law.name, np.asarray(self.law.parameters(pair), dtype=float)
+        found = _table(name, self.law.kernels, par.tobytes(), pair.R)
         if not found.outcome.completed:
             raise InputError(
-                f"{self.law.name} cannot be tabulated: {found.outcome.message}",
+                f"{name} cannot be tabulated: {found.outcome.message}",
                 key="law",
                 allowed="a law without jumps",
             )
@@ -168,18 +156,15 @@ def tabulated(law: ContactLaw) -> TabulatedLaw:
     """
     if isinstance(law, TabulatedLaw):
         law = law.law
-    return TabulatedLaw(
-        name=law.name, title=law.title, source=law.source, equations=law.equations,
-        standing=law.standing, domain=law.domain, breaks=law.breaks, regime=law.regime,
-        read=law.read, law=law,
-    )  # fmt: skip
+    return TabulatedLaw(**law.about, law=law)
 
 
-def _table(law: ContactLaw, par: Array, R: float) -> TableCells:
-    kernels = law.kernels
+@lru_cache(maxsize=TABLES_KEPT)
+def _table(name: str, kernels: Kernels, numbers: bytes, R: float) -> TableCells:
+    par = np.frombuffer(bytearray(numbers))
     if not _recovers_by_power(kernels.unloading, kernels.residual, par, R):
         raise InputError(
-            f"{law.name} recovers otherwise than by a power of the depth",
+            f"{name} recovers otherwise than by a power of the depth",
             key="law",
             allowed="a law with such a recovery",
         )
@@ -207,10 +192,6 @@ def _table(law: ContactLaw, par: Array, R: float) -> TableCells:
     )
 
 
-def _bits(number: float) -> int:
-    return int(np.float64(number).view(np.int64))
-
-
 def _first_octave(R: float) -> float:
     """Power of two at or below the shallowest depth."""
     return math.ldexp(0.5, math.frexp(SHALLOWEST * R)[1])
@@ -220,13 +201,8 @@ def _octaves(R: float) -> int:
     return math.ceil(math.log2(DEEPEST * R / _first_octave(R)))
 
 
-_LOADING = types.FunctionType(LOADING_SIGNATURE)
-_BRANCH = types.FunctionType(BRANCH_SIGNATURE)
-_SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
-
-
 @njit(
-    types.void(_LOADING, _BRANCH, _BRANCH, _SPLIT, VECTOR, VECTOR, types.float64[:, ::1]),
+    types.void(LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, types.float64[:, ::1]),
     cache=True, _nrt=False,
 )  # fmt: skip
 def _ask(loading, radius, unloading, residual, par, depths, out):
@@ -245,7 +221,7 @@ def _ask(loading, radius, unloading, residual, par, depths, out):
             out[i, 4] = -math.log(half / unloading(par, depth, depth)) / math.log(2.0)
 
 
-@njit(types.boolean(_BRANCH, _SPLIT, VECTOR, types.float64), cache=True, _nrt=False)
+@njit(types.boolean(BRANCH, SPLIT, VECTOR, types.float64), cache=True, _nrt=False)
 def _recovers_by_power(unloading, residual, par, R):
     for decade in range(1, 9):
         peak = R * 10.0**-decade

@@ -9,7 +9,7 @@ as a diagnosis has them, and grow with the share of the work that the contact ke
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -100,16 +100,15 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
     if not found_now.outcome.completed:
         return Band(parts)
     for key, share, up, down in _shifted(setup, law):
-        found = [last_blow(one, law) for one in (up, down)]
-        pressures = [
-            largest_mean_pressure(one.scene(law), blow)
-            for one, blow in zip((up, down), found, strict=True)
-        ]
-        ends = [{**_values(blow), PRESSURE: p} for blow, p in zip(found, pressures, strict=True)]
-        parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
+        blows = [(one.scene(law), last_blow(one, law)) for one in (up, down)]
+        high, low = ({**_values(b), PRESSURE: largest_mean_pressure(s, b)} for s, b in blows)
+        parts[key] = {n: 0.5 * (high[n] - low[n]) / share for n in high}
     scene = setup.scene(law)
     of_law, of_metal = _sizes_of(setup, scene, found_now)
-    slopes = _slopes(setup, law, _acting([(of_law, of_metal)]))
+    slopes = _slopes(
+        _NUMBERS, _acting([(of_law, of_metal)]),
+        lambda change: _values(last_blow(setup, law, change)),
+    )  # fmt: skip
     pressure = largest_mean_pressure(scene, found_now)
     for name, sizes in ((LAW, of_law), (METALS, of_metal)):
         parts[name] = _combined(sizes, slopes, found_now)
@@ -123,12 +122,8 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
 
 def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
     """Return the uncertain quantities that change nothing, and how uncertain they are."""
-    stated = {".".join(path): quantity for path, quantity in _uncertain(setup)}
-    return [
-        (key, quantity.relative)
-        for key, quantity in stated.items()
-        if not any(band.parts.get(key, {}).values())
-    ]
+    stated = ((".".join(path), quantity.relative) for path, quantity in _uncertain(setup))
+    return [(key, share) for key, share in stated if not any(band.parts.get(key, {}).values())]
 
 
 def vague(setup: Setup) -> Iterator[tuple[str, float]]:
@@ -294,21 +289,20 @@ def _acting(sizes: Sequence[tuple[_Sizes, _Sizes]]) -> tuple[bool, ...]:
     return tuple(any(one[k] > 0.0 for both in sizes for one in both) for k in range(3))
 
 
-def _slopes(setup: Setup, law: ContactLaw, acting: Sequence[bool]) -> list[dict[str, float]]:
-    """Change of each field by the logarithm of force and recovery, and by the exponent."""
-    slopes: list[dict[str, float]] = []
-    for k in range(3):
-        if not acting[k]:
-            slopes.append(dict.fromkeys(_NUMBERS, 0.0))
+def _slopes(
+    names: Sequence[str], acting: Sequence[bool], moved: Callable[[Change], Any], none: Any = 0.0
+) -> list[dict[str, Any]]:
+    """Change of each number by the logarithm of force and recovery, and by the exponent.
+
+    `moved` gives the numbers by name with the force changed; `none` stands for what is not off.
+    """
+    slopes: list[dict[str, Any]] = []
+    for k, acts in enumerate(acting):
+        if not acts:
+            slopes.append(dict.fromkeys(names, none))
             continue
-        blows = [
-            last_blow(setup, law, _moving(k, step)) for step in (RULES.band_step, -RULES.band_step)
-        ]
-        if not all(blow.outcome.completed for blow in blows):
-            slopes.append(dict.fromkeys(_NUMBERS, math.nan))
-            continue
-        ends = [_values(blow) for blow in blows]
-        slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * RULES.band_step) for n in _NUMBERS})
+        high, low = (moved(_moving(k, step)) for step in (RULES.band_step, -RULES.band_step))
+        slopes.append({n: (high[n] - low[n]) / (2.0 * RULES.band_step) for n in names})
     return slopes
 
 
@@ -324,20 +318,14 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
         ends = up.swept(law), down.swept(law)
         for name in SWEPT:
             variance[name] += (0.5 * (ends[0][name] - ends[1][name]) / share) ** 2
-    scene, slopes, rows = setup.scene(law), [], list(found.rows())
+    scene, rows = setup.scene(law), list(found.rows())
     sizes = [
         _sizes_of(setup, scene, SimpleNamespace(**values, residual_flat_m=values[_CRATER]))
         for values in rows
     ]
-    for k, acts in enumerate(_acting(sizes)):
-        if not acts:
-            slopes.append({name: np.zeros(len(rows)) for name in SWEPT})
-            continue
-        one, two = (
-            setup.swept(law, change=_moving(k, step))
-            for step in (RULES.band_step, -RULES.band_step)
-        )
-        slopes.append({name: (one[name] - two[name]) / (2.0 * RULES.band_step) for name in SWEPT})
+    slopes = _slopes(
+        SWEPT, _acting(sizes), lambda change: setup.swept(law, change=change), np.zeros(len(rows))
+    )
     for row, values in enumerate(rows):
         for part in sizes[row]:
             for name in SWEPT:

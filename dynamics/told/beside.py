@@ -36,11 +36,8 @@ def beside_fitted(law: ContactLaw, pair: Pair, depth: npt.ArrayLike) -> Uncertai
     fitted = law_named("fitted")
     assert isinstance(fitted, ClosedForm)
     d = np.asarray(depth, dtype=float)
-    own, ours, theirs = (
-        fitted.uncertainty(pair, d),
-        _answers(fitted, pair, d),
-        _answers(law, pair, d),
-    )
+    own = fitted.uncertainty(pair, d)
+    ours, theirs = (_answers(one, pair, d) for one in (fitted, law))
     away = [np.abs(np.log(a / b)) for a, b in zip(theirs, ours, strict=True)]
     split = getattr(law, "share", None)
     share = split(pair, d) if split else np.full(d.shape, pair.elastic_share)

@@ -122,10 +122,8 @@ def _unit_blow(law: Damped, damping: float) -> ExportedBlow:
 
 def entered_for(damping: float) -> float:
     """Return the restitution to enter for Tsuji's damping; the polynomial misses by up to 0.02."""
-    ends = 0.0, 1.02
-    found = float(brentq(lambda e: _tsuji(e) - damping, *ends))
-    return min(found, 1.0)  # the polynomial reaches no damping beyond 1
 
+    def missed(entered: float) -> float:
+        return math.fsum(a * entered**k for k, a in enumerate(TSUJI_DAMPING)) - damping
 
-def _tsuji(entered: float) -> float:
-    return math.fsum(a * entered**k for k, a in enumerate(TSUJI_DAMPING))
+    return min(float(brentq(missed, 0.0, 1.02)), 1.0)  # it reaches no damping beyond 1

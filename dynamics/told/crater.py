@@ -60,7 +60,11 @@ def surfaces_left(
     bodies: tuple[tuple[Body, str], ...] = (
         ("flat", "residual_flat_m"), ("sphere", "residual_sphere_m"),
     )  # fmt: skip
-    shared = 0.0 if std is None else peak * _share_std(scene, peak)
+    shared = 0.0
+    if std is not None:
+        # how far off the law may part the approach between the bodies, so what stays in each
+        share = error_of(scene.law, scene.pair, np.array([peak])).share
+        shared = peak * float(np.nan_to_num(share[0]))
     return [
         _surface(
             scene, left, body, mark if body == dented else None,
@@ -70,12 +74,6 @@ def surfaces_left(
         # a law gives a body of no strength nothing but roundings, or is out of its range
         if left.of(body) > 0.0 and getattr(scene.pair, body).strength < math.inf
     ]  # fmt: skip
-
-
-def _share_std(scene: Scene, depth: float) -> float:
-    """How far off the law may part the approach between the bodies, so what stays in each."""
-    share = error_of(scene.law, scene.pair, np.array([depth])).share
-    return float(np.nan_to_num(share[0]))
 
 
 def _surface(
@@ -101,7 +99,4 @@ def _surface(
     place = np.concatenate([start - before * PLACES[::-1], end + after * PLACES])
     height, own = (np.concatenate([x[::-1], x]) for x in (shape.height, shape.std))
     off = np.zeros_like(height) if std is None else np.hypot(std * height, depth * own)
-    return LeftSurface(
-        body, place, depth * height, off, left.radius, depth,
-        shaped=True,
-    )  # fmt: skip
+    return LeftSurface(body, place, depth * height, off, left.radius, depth, shaped=True)

@@ -81,15 +81,11 @@ def draw_sweep(
             )
             if name in stds and found is first:
                 off = told.scale * stds[name][rows]
+                low = np.maximum(values - off, 0.0) if told.low == 0.0 else values - off
                 axis.fill_between(
-                    swept[across],
-                    np.maximum(values - off, 0.0) if told.low == 0.0 else values - off,
-                    values + off,
-                    color=drawn.get_color(),
-                    alpha=0.2,
-                    lw=float(alone),
-                    label="its standard deviation",
-                )
+                    swept[across], low, values + off, color=drawn.get_color(), alpha=0.2,
+                    lw=float(alone), label="its standard deviation",
+                )  # fmt: skip
         axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
         axis.grid(alpha=0.3)
     fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ...core.inputs.second_sphere import StruckSphere
 from ...core.material import Pair
-from .discrete_elements import SOFTENED, ExportedRow, Substitute, two_balls
+from .discrete_elements import SOFTENED, ExportedRow, two_balls
 
 
 def tangential_stiffness(pair: Pair) -> float:
@@ -99,7 +99,14 @@ def _law(row: ExportedRow, pair: Pair, friction: float, where: str, told: list[s
         told.append(row.without(SOFTENED))
         return ""
     told.append(f"{row.law.speed:g} m/s{where}: {soft.told(row.law)}")
-    return _lammps(own, soft, pair, friction)
+    # LAMMPS multiplies by the root of the effective radius
+    k = soft.stiffness / math.sqrt(pair.R)
+    tangential = "linear_nohistory 0.0 0.0"
+    if friction > 0.0:
+        # softened as the normal stiffness, so that their ratio stays Mindlin's
+        kt = tangential_stiffness(pair) * soft.stiffness / own.stiffness
+        tangential = f"mindlin_rescale {kt:.6e} 0.0 {friction:g}"
+    return f"hertz {k:.6e} {soft.entered:.6f} tangential {tangential} damping tsuji"
 
 
 def _balls(R: float, mass: float, two: bool) -> dict[str, str | float]:
@@ -154,14 +161,3 @@ def _tangential_told(friction: float) -> str:
             "has no viscous part"
         )
     return "none, for the file states no friction.coefficient"
-
-
-def _lammps(own: Substitute, soft: Substitute, pair: Pair, friction: float) -> str:
-    # LAMMPS multiplies by the root of the effective radius
-    k = soft.stiffness / math.sqrt(pair.R)
-    tangential = "linear_nohistory 0.0 0.0"
-    if friction > 0.0:
-        # softened as the normal stiffness, so that their ratio stays Mindlin's
-        kt = tangential_stiffness(pair) * soft.stiffness / own.stiffness
-        tangential = f"mindlin_rescale {kt:.6e} 0.0 {friction:g}"
-    return f"hertz {k:.6e} {soft.entered:.6f} tangential {tangential} damping tsuji"

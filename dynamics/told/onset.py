@@ -103,8 +103,8 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     if scene.striker.tip_flat_radius > 0.0 or not 0.0 < peak < math.inf:
         return math.nan
     depth = np.geomspace(1e-3 * peak, peak, _PRESSURE_POINTS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+    # the doubt about a law has its own line
+    with warnings.catch_warnings(action="ignore", category=DomainWarning):
         stated = scene.law.hardness(scene.pair, depth)
         return float(np.max(stated * _harder(scene, depth)))
 

@@ -138,10 +138,11 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
     heights = 1e6 * np.concatenate([[0.0], *(s.height for s in left)])
     low, high = float(heights.min()), float(heights.max())
     stretch = _stretch((high - low) / (2e6 / scale * reach))
+    stretched = f"heights drawn {stretch:g} times too large"
     axis.set(
         xlim=(-reach, reach), xlabel=f"from the middle [{unit}]; dotted: the contact",
         ylabel="over the surface that was [um]",
-        title=f"left by {law}; {_vertical_scale(stretch)}",
+        title=f"left by {law}; {stretched if stretch > 1.0 else 'to scale'}",
         aspect=stretch * scale / 1e6, ylim=(low - 0.45 * (high - low),
                                                         high + 0.25 * (high - low)),
     )  # fmt: skip
@@ -153,10 +154,6 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
 def _stretch(tall: float) -> float:
     """By how much heights are drawn larger than widths, in one digit, where they are flat."""
     return max(float(f"{0.55 / tall:.1g}"), 1.0)
-
-
-def _vertical_scale(stretch: float) -> str:
-    return f"heights drawn {stretch:g} times too large" if stretch > 1.0 else "to scale"
 
 
 def _draw_curves(

@@ -37,7 +37,9 @@ def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
     rod = body.shape == "rod"
     window = 2.6 * max(R, 2.0 * r if rod else r)
     angle = math.radians(setup.file.impact.angle_deg)
-    striker = (_rod(R, r, body.length, angle) if rod else _circle(R)) + np.array([0.0, R])
+    t = np.linspace(0.0, 2.0 * math.pi, 181)
+    circle = R * np.column_stack([np.cos(t), np.sin(t)])
+    striker = (_rod(R, r, body.length, angle) if rod else circle) + np.array([0.0, R])
     if setup.second is not None:
         struck = _struck_sphere(setup.second.radius, place, height, 2.0 * window)
         return RigShape(striker, struck, window, math.inf)
@@ -46,11 +48,6 @@ def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
     top = [(-far, 0.0), *zip(place, height, strict=True), (far, 0.0)]
     struck = np.array([*top, (far, below), (-far, below)])
     return RigShape(striker, struck, window, thickness)
-
-
-def _circle(R: float) -> Array:
-    t = np.linspace(0.0, 2.0 * math.pi, 181)
-    return R * np.column_stack([np.cos(t), np.sin(t)])
 
 
 def _rod(R: float, r: float, length: float, angle: float) -> Array:

@@ -8,9 +8,9 @@ import numpy as np
 from numba import int64, njit, types
 
 from ...core.arrays import Array
-from ...models.kernel import VECTOR
+from ...models.kernel import BRANCH, LOADING, SPLIT, VECTOR
 from .. import surface as su
-from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
+from ..force import DAMPING, N_BRANCH, RADIATION
 from . import layout as at
 from .advance import advance
 from .bundle import bundled
@@ -18,13 +18,10 @@ from .change import bound, change, part, rest, sinks
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
-from .layout import MATRIX, OBSERVABLES, PLAIN, WORK_TUPLE, Given, Model, Work
+from .layout import MATRIX, PLAIN, WORK_TUPLE, Given, Model, Work
 from .record import begin, finish, note, note_flight
 from .step import STAGES
 from .touch import refresh, touch
-
-__all__ = ["OBSERVABLES", "many_impacts"]
-
 
 # fmt: off
 _LANES = 16

@@ -21,14 +21,11 @@ from .layout import PLAIN
 
 # limit: looks at the gap in one flight [-]: beyond it the flight ends unfinished
 LOOKS = 100_000
-"""Looks at the gap in one flight; beyond it the flight ends unfinished."""
 CLEAR, TOUCHED, HORIZON, LOST = range(4)
 
-# Rows of the scratch matrix: amplitude of each mode at the tip, its largest acceleration there, and
-# along the flat its largest speed and acceleration.
-_REACH, _PUSH, _ASIDE, _ASIDE_PUSH = range(4)
-N_FAST = 4
-
+# Rows of the scratch matrix: amplitude of each mode at the tip, its largest acceleration there.
+_REACH, _PUSH = range(2)
+N_FAST = 2
 
 # pi/2 as a sum: the first two parts have few digits, so that their multiples are exact
 _QUARTER = (1.57079632673412561417e0, 6.07710050630396597660e-11, 2.02226624879595063154e-21)

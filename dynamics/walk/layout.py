@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 from numba import types
 
-from ...models.kernel import VECTOR
-from ..force import BRANCH, LOADING, SPLIT
+from ...models.kernel import BRANCH, LOADING, SPLIT, VECTOR
 from .bundle import Bundle
 
 # The kernels take their state as plain vectors; the names stay on few lines.
@@ -25,7 +24,7 @@ PLAIN = {
 
 
 class Given(NamedTuple):
-    """What impacts are given, one row each or one row for all."""
+    """The vectors of a scene, or of several: one row each or one row for all."""
 
     par: Any
     force: Any

@@ -10,7 +10,6 @@ import numpy as np
 from ...core.arrays import Array
 from ...dynamics import force as fo
 from ...dynamics import surface as su
-from ...dynamics.integrate import Arrays
 from ...dynamics.scene import Scene
 from ...dynamics.walk import layout as c
 
@@ -43,7 +42,7 @@ class Motion:
     falls with speed.
     """
 
-    def __init__(self, scene: Scene, a: Arrays) -> None:
+    def __init__(self, scene: Scene, a: c.Given) -> None:
         b, f = a.body, a.force
         if any((b[c.PLOUGH], b[c.S_PLATE], f[fo.DAMPING], f[fo.RADIATION])) or (
             b[c.MU_STATIC] != b[c.MU]

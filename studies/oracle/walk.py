@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from ...core.arrays import Array
 from ...dynamics import force as fo
 from ...dynamics import surface as su
-from ...dynamics.integrate import Arrays, Settings, arrays_of
+from ...dynamics.integrate import Settings, arrays_of
 from ...dynamics.result import Impact, impact_of
 from ...dynamics.scene import Scene
 from ...dynamics.surface import Spot
@@ -58,7 +58,7 @@ def oracle_impact(
 class _Walk:
     """Goes from event to event."""
 
-    def __init__(self, scene: Scene, a: Arrays, settings: Settings, tolerance: float) -> None:
+    def __init__(self, scene: Scene, a: c.Given, settings: Settings, tolerance: float) -> None:
         self.motion, self.a, self.settings = Motion(scene, a), a, settings
         self.rtol, self.small_share = tolerance, 0.1 * tolerance
         self.surface = a.surface.copy()

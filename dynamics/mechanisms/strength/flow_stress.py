@@ -10,7 +10,7 @@ D. Tabor, The Hardness of Metals (1951).
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -32,21 +32,11 @@ RATE = 0.4
 STRAIN = REPRESENTATIVE  # of (a - a_c)/R
 
 
-class StrengthProfile(ABC):
-    """A strength that follows the depth."""
-
-    __slots__ = ()
-
-    @abstractmethod
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-
-
 @dataclass(frozen=True, slots=True)
-class Fallen(StrengthProfile):
+class Fallen:
     """One over another profile: a strength that falls where that one rises, and stays above 0."""
 
-    risen: StrengthProfile
+    risen: FlowStress
 
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""

@@ -12,11 +12,11 @@ from ....core.arrays import Array
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import FallingStrength, FlowMechanism, StrengthProfile
+from .flow_stress import FallingStrength, FlowMechanism
 
 
 @dataclass(frozen=True, slots=True)
-class LayerProfile(StrengthProfile):
+class LayerProfile:
     """1 + k exp(-z/t) at z = a/2, the depth of the largest shear."""
 
     rise: float

@@ -14,11 +14,11 @@ from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
 from ..base import Parameter, Situation, Surroundings, Values
-from .flow_stress import FlowMechanism, StrengthProfile
+from .flow_stress import FlowMechanism
 
 
 @dataclass(frozen=True, slots=True)
-class SizeProfile(StrengthProfile):
+class SizeProfile:
     """sqrt(1 + R*/R), the same at every depth."""
 
     length: float
@@ -44,8 +44,7 @@ class SizeEffect(FlowMechanism):
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields, tips of different radius, and small contacts."""
-        reason = super().applies(situations)
-        if reason:
+        if reason := super().applies(situations):
             return reason
         radii = [scene.pair.R for scene, _ in situations]
         if max(radii) < 1.3 * min(radii):

@@ -14,13 +14,13 @@ from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
+from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism
 
 REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
 
 
 @dataclass(frozen=True, slots=True)
-class RateProfile(StrengthProfile):
+class RateProfile:
     """1 + A (r/1000)^n with r = 0.4 v(depth)/a: the rate falls as the impact slows down.
 
     At the turning point the metal keeps the strength of the rate just before it: a strength taken

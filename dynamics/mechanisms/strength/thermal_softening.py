@@ -15,11 +15,11 @@ from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..arithmetic import density_of, energy
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import STRAIN, FlowMechanism, StrengthProfile, strain
+from .flow_stress import STRAIN, FlowMechanism, strain
 
 
 @dataclass(frozen=True, slots=True)
-class HeatProfile(StrengthProfile):
+class HeatProfile:
     """1 - T*^m over that at the reference temperature."""
 
     heat: float
@@ -55,8 +55,7 @@ class ThermalSoftening(FlowMechanism):
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the heat of deformation with the way to melting."""
-        reason = super().applies(situations)
-        if reason:
+        if reason := super().applies(situations):
             return reason
         largest, heat = 0.0, 0.0
         for scene, around in situations:

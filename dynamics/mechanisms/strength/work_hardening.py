@@ -15,14 +15,7 @@ from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import (
-    Fallen,
-    FallingStrength,
-    FlowMechanism,
-    StrengthProfile,
-    settled_strain,
-    strain,
-)
+from .flow_stress import Fallen, FallingStrength, FlowMechanism, settled_strain, strain
 
 
 def measured_further(situations: Sequence[Situation]) -> str:
@@ -45,7 +38,7 @@ def measured_further(situations: Sequence[Situation]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class StrainProfile(StrengthProfile):
+class StrainProfile:
     """Mean of 1 + K p^n over the strains under the contact, as the law of metals that harden."""
 
     rise: float
