@@ -21,8 +21,8 @@ from numba import njit
 from ..core.arrays import Array, Integers
 from ..core.unowned import unowned
 from .elements import Elements, State
-from .material import EXACT, exponential, law_of
-from .material.flow import at_point
+from .material import EXACT, exponential
+from .material.flow import law_at
 from .material.lanes import (
     B0,
     E0,
@@ -135,8 +135,7 @@ def _gather(x, u, old, block, w):
             if law >= 0:
                 strain, work = old.peeq[e, q], old.work[e, q]
                 w[STRAIN + at], w[WORK + at] = strain, work
-                here = law_of(x.laws, law, 0.0, math.inf)
-                _, w[R0 + at] = at_point(here, x.laws.curve[law], strain, work)
+                _, w[R0 + at] = law_at(x.laws, law, strain, work, 0.0, math.inf)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

@@ -14,8 +14,7 @@ from ..core.material import Material, Pair
 from .assemble import bulk_forces
 from .contact import Surfaces
 from .elements import Elements, State
-from .laws import laws_of
-from .material import EXACT
+from .material import EXACT, laws_of
 from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
 from .problem import Accuracy, Clock, ContactProblem
 from .rules import RULES
@@ -170,28 +169,34 @@ def with_linear(elements: Elements, mask: Mask) -> Elements:
 def _elements(
     mesh: Mesh, index: Integers, sphere: Material, flat: Material, unit: float
 ) -> Elements:
-    grid = skfem.MeshQuad(mesh.points.T.copy(), mesh.quads[index].T.copy())
+    geometry = geometry_of(skfem.MeshQuad(mesh.points.T.copy(), mesh.quads[index].T.copy()))
+    geometry["grad"] = _softened(geometry["grad"], geometry["dV"])
+    geometry = {name: np.ascontiguousarray(x) for name, x in geometry.items()}
+    return Elements(**geometry, **_constants(index < mesh.n_sphere_quads, sphere, flat, unit))
+
+
+def geometry_of(grid: skfem.MeshQuad) -> dict[str, Any]:
+    """What `Elements` knows of a mesh alone, none of them linear."""
     low, high = 0.5 - _GAUSS, 0.5 + _GAUSS
     points = np.array([[low, high, high, low], [low, low, high, high]])
     basis = skfem.CellBasis(grid, skfem.ElementQuad1(), quadrature=(points, np.full(4, 0.25)))
+    n = grid.t.shape[1]
     grad = np.stack([np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)], axis=2)
     value = np.stack(
-        [np.broadcast_to(np.asarray(basis.basis[a][0]), (len(index), 4))[0] for a in range(4)]
+        [np.broadcast_to(np.asarray(basis.basis[a][0]), (n, 4))[0] for a in range(4)], axis=1
     )
     r = np.asarray(basis.global_coordinates())[0]
     dV = 2.0 * math.pi * r * basis.dx
-    grad = _softened(grad, dV)
-    return Elements(
-        conn=np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),
-        grad=np.ascontiguousarray(grad),
-        value=np.ascontiguousarray(value.T),
-        r=np.ascontiguousarray(r),
-        dV=np.ascontiguousarray(dV),
-        volume=dV.sum(axis=1),
-        stiffness=np.empty((0, 8, 8)),
-        linear=np.full(len(index), -1),
-        **_constants(index < mesh.n_sphere_quads, sphere, flat, unit),
-    )
+    return {
+        "conn": np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),
+        "grad": np.ascontiguousarray(grad),
+        "value": np.ascontiguousarray(value),
+        "r": r,
+        "dV": dV,
+        "volume": dV.sum(axis=1),
+        "stiffness": np.empty((0, 8, 8)),
+        "linear": np.full(n, -1),
+    }
 
 
 def _softened(grad: Array, dV: Array) -> Array:

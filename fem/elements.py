@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from ..core.arrays import Array, Integers
-from .material import FlowLaws, law_of
-from .material.flow import NO_RATE, at_point
+from .material import FlowLaws
+from .material.flow import NO_RATE, law_at
 
 
 class Elements(NamedTuple):
@@ -100,42 +100,16 @@ class State(NamedTuple):
         return State(F, b, strain, peeq, work, 0.0)
 
 
-@njit(cache=True, inline="always")
-def gradient(x, u, e, q, F):
-    """Write the deformation gradient at point q of element e into `F` (5,)."""
-    f0 = 1.0
-    f1 = 0.0
-    f2 = 0.0
-    f3 = 1.0
-    hoop = 0.0
-    for a in range(4):
-        i = 2 * x.conn[e, a]
-        gr = x.grad[e, q, a, 0]
-        gz = x.grad[e, q, a, 1]
-        f0 += u[i] * gr
-        f1 += u[i] * gz
-        f2 += u[i + 1] * gr
-        f3 += u[i + 1] * gz
-        hoop += u[i] * x.value[q, a]
-    F[0] = f0
-    F[1] = f1
-    F[2] = f2
-    F[3] = f3
-    F[4] = 1.0 + hoop / x.r[e, q]
-
-
 @njit(cache=True)
 def radius_at_rest(elements, peeq, work):
     """Radius of the yield circle at rest at J = 1; `inf` where rate may hold a point outside."""
     out = np.empty(peeq.shape)
-    laws = elements.laws
     for e in range(peeq.shape[0]):
         k = elements.law[e]
         for q in range(4):
             out[e, q] = elements.radius[e]
             if k >= 0:
-                law = law_of(laws, k, 0.0, np.inf)
-                _, out[e, q] = at_point(law, laws.curve[k], peeq[e, q], work[e, q])
+                law, out[e, q] = law_at(elements.laws, k, peeq[e, q], work[e, q], 0.0, np.inf)
                 if law.rate != NO_RATE:
                     out[e, q] = np.inf
     return out
@@ -144,10 +118,20 @@ def radius_at_rest(elements, peeq, work):
 @njit(cache=True)
 def deformation(elements, u):
     """Deformation gradients at displacement `u`, shape (n_elements, 4, 5)."""
-    F = np.empty((elements.conn.shape[0], 4, 5))
+    F = np.zeros((elements.conn.shape[0], 4, 5))
     for e in range(elements.conn.shape[0]):
         for q in range(4):
-            gradient(elements, u, e, q, F[e, q])
+            f = F[e, q]
+            f[0], f[3] = 1.0, 1.0
+            for a in range(4):
+                i = 2 * elements.conn[e, a]
+                gr, gz = elements.grad[e, q, a, 0], elements.grad[e, q, a, 1]
+                f[0] += u[i] * gr
+                f[1] += u[i] * gz
+                f[2] += u[i + 1] * gr
+                f[3] += u[i + 1] * gz
+                f[4] += u[i] * elements.value[q, a]
+            f[4] = 1.0 + f[4] / elements.r[e, q]
     return F
 
 

@@ -25,15 +25,12 @@ _NOUGHT, _ONE = np.float32(0.0), np.float32(1.0)  # others would turn sums into 
 # limit: columns eliminated before what is right of and below them is brought up to date [-]: a
 # cache's lines
 _BLOCK = 16
-"""Columns that are eliminated before all that is right of and below them is brought up to date."""
 
 # limit: unknowns up to which a supernode joins its parent [-]: a call costs more than the zeros
 _NARROW = 8
-"""Unknowns up to which a supernode joins its parent whatever zeros that fills in."""
 
 # limit: entries of which one may become a filled zero where a wider one joins [-]: the same
 _FILL = 8
-"""A wider one joins its parent where at most one of so many entries becomes a filled zero."""
 
 
 @njit(cache=True)

@@ -31,11 +31,6 @@ _KRYLOV = 12
 
 Solve = Callable[[Array], Array]
 
-_FORCING = RULES.forcing
-_RESIDUAL = RULES.krylov_residual
-_PATIENCE = RULES.refactor_after
-_REACH = RULES.pattern_reach
-
 
 def superlu(matrix: sparse.csc_matrix) -> Solve:
     """Factorise with scipy's SuperLU, exchanging rows; the order reduces fill already."""
@@ -100,7 +95,6 @@ class LinearSystem:
         self.n = len(free)
         self.n_patterns = 0
         self.n_factorisations = 0
-        self._fronts: Fronts | None = None
         self._room = (
             np.empty(self.n, np.float32),
             np.empty(self.n),
@@ -113,8 +107,6 @@ class LinearSystem:
         self._element_keys = self._keys(
             np.repeat(element_dofs, 8, axis=1).ravel(), np.tile(element_dofs, (1, 8)).ravel()
         )
-        self._number = self._plain
-        self._matrix: sparse.csc_matrix | None = None
 
     def _keys(self, rows: Integers, cols: Integers) -> Integers:
         i, j = self._plain[rows], self._plain[cols]
@@ -131,13 +123,12 @@ class LinearSystem:
         contact: ContactState,
     ) -> None:
         """Set the matrix from the element tangents (n_elements, 8, 8) and the contact triplets."""
-        if self._matrix is None or not self._fill(tangent, triplets, n_triplets):
+        if self.n_patterns == 0 or not self._fill(tangent, triplets, n_triplets):
             self._new_pattern(surfaces, contact)
             if not self._fill(tangent, triplets, n_triplets):
                 raise AssertionError("contact couplings outside a fresh pattern")
 
     def _fill(self, tangent: Array, triplets: Triplets, n: int) -> bool:
-        assert self._matrix is not None
         m = self._matrix
         m.data[:] = 0.0
         _scatter(m.data, self._position, tangent.ravel())
@@ -165,14 +156,12 @@ class LinearSystem:
         pattern.sort_indices()
         place = np.empty(self.n, dtype=np.int64)
         place[postorder(*_arrays(pattern))] = np.arange(self.n)
-        order = place[order]
-        self._order = order
+        self._order = order = place[order]
         self._number = np.where(self._plain >= 0, order[self._plain], -1)
         rows, cols = order[rows], order[cols]
         matrix = sparse.csc_matrix((np.zeros(len(keys)), (rows, cols)), shape=(self.n, self.n))
         matrix.sort_indices()
-        self._matrix = matrix
-        self._fronts = Fronts(*_arrays(matrix))
+        self._matrix, self._fronts = matrix, Fronts(*_arrays(matrix))
         sorted_keys = np.repeat(np.arange(self.n), np.diff(matrix.indptr)) * self.n + matrix.indices
         d = self._element_dofs
         i = self._number[np.repeat(d, 8, axis=1).ravel()]
@@ -186,8 +175,8 @@ class LinearSystem:
         rows, cols = [], []
         for a in range(last + 1):
             edges = contact.segment[max(a - 1, 0) : a + 1]
-            low = max(int(edges.min()) - 1 - _REACH, 0)
-            high = int(edges.max()) + 3 + _REACH
+            low = max(int(edges.min()) - 1 - RULES.pattern_reach, 0)
+            high = int(edges.max()) + 3 + RULES.pattern_reach
             nodes = np.concatenate(
                 [surfaces.slave[max(a - 2, 0) : a + 3], surfaces.master[low:high]]
             )
@@ -200,20 +189,17 @@ class LinearSystem:
         """Solution of K x = rhs over the free degrees of freedom, in their own order."""
         permuted = np.empty(self.n)
         permuted[self._order] = rhs
-        x = self._iterate(permuted) if self._n_last <= _PATIENCE else None
+        x = self._iterate(permuted) if self._n_last <= RULES.refactor_after else None
         if x is None:
             x = self._factorised(permuted)
         return np.asarray(x[self._order])
 
     def _factorised(self, rhs: Array) -> Array:
         """Solve with fresh factors; by SuperLU where rows have to be exchanged."""
-        matrix, fronts = self._matrix, self._fronts
-        assert matrix is not None
-        assert fronts is not None
         self.n_factorisations += 1
-        x = self._iterate(rhs) if fronts.factorise(matrix.data) else None
+        x = self._iterate(rhs) if self._fronts.factorise(self._matrix.data) else None
         self._n_last = 0 if x is not None else _KRYLOV
-        return x if x is not None else np.asarray(superlu(matrix)(rhs))
+        return x if x is not None else np.asarray(superlu(self._matrix)(rhs))
 
     def _iterate(self, rhs: Array) -> Array | None:
         """Solve with the factors that there are as preconditioner; none: not good enough.
@@ -221,11 +207,9 @@ class LinearSystem:
         Factors that have become wrong can make GMRES's criterion blind, so the residual must have
         fallen too.
         """
-        matrix, fronts = self._matrix, self._fronts
-        assert matrix is not None
-        assert fronts is not None
-        x = np.empty(self.n)
+        matrix, x = self._matrix, np.empty(self.n)
         parts = (matrix.indptr, matrix.indices.view(np.uint32), matrix.data)
-        steps, left = gmres(parts, rhs, fronts.known, (*self._room, x), _FORCING, _KRYLOV)
+        room = (*self._room, x)
+        steps, left = gmres(parts, rhs, self._fronts.known, room, RULES.forcing, _KRYLOV)
         self._n_last = abs(steps)
-        return None if steps < 0 or not left <= _RESIDUAL else x
+        return None if steps < 0 or not left <= RULES.krylov_residual else x

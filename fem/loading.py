@@ -20,11 +20,10 @@ from .elements import State
 from .material import EXACT
 from .mesh import Layers, Zone
 from .newton import Solver, Timers
-from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
-from .problem import DEEPEST, Accuracy, ContactProblem
+from .path import MOST_CUTS, PathPoint, Record, accept, extrapolate
+from .problem import Accuracy, ContactProblem
 from .remesh import Transfer
 from .results.measure import read
-from .results.ripple import BEYOND
 from .rules import RULES
 
 # limit: ratio of depths below which the path stands still, whatever converges [-]: a million
@@ -90,7 +89,7 @@ class Loading:
             if target == len(self._stops):
                 if self._deep_enough(point):
                     self._beyond += 1
-                    if self._beyond > BEYOND:
+                    if self._beyond > RULES.steps_beyond:
                         return
                 self._stops.append(point.delta * self.accuracy.step_ratio)
             goal = self._stops[target]
@@ -121,7 +120,7 @@ class Loading:
 
     def _deep_enough(self, point: PathPoint) -> bool:
         radius = point.record.reading.radius
-        return radius >= self.problem.radius_at_least or point.delta >= DEEPEST
+        return radius >= self.problem.radius_at_least or point.delta >= RULES.deepest
 
     def _limit(self, point: PathPoint) -> float:
         elastic = point.delta < RULES.elastic_until * self._onset
@@ -187,7 +186,7 @@ class Loading:
             if found is not None:
                 return accept(point, found, delta), ratio
             self.tally.failed += 1
-            ratio = 1.0 + (min(ratio, delta / point.delta) - 1.0) * STEP_CUT
+            ratio = 1.0 + (min(ratio, delta / point.delta) - 1.0) * RULES.step_cut
         return None, ratio
 
     def _follow(self, point: PathPoint, before: Array | None) -> tuple[PathPoint, Array | None]:

@@ -20,11 +20,6 @@ from .rules import RULES
 # limit: cuts after which the path ends [-]
 MOST_CUTS = 7
 
-STEP_CUT = RULES.step_cut
-"""A failed step is tried again with this fraction of its logarithm."""
-
-"""So often, then the path ends."""
-
 
 @dataclass(frozen=True)
 class Record:

@@ -15,9 +15,6 @@ from .rules import RULES
 NUMERICS_VERSION = 5
 """Raised only when results change; stored with every case."""
 
-DEEPEST = RULES.deepest
-"""Largest Delta/R that can be asked for."""
-
 
 @dataclass(frozen=True)
 class Accuracy:
@@ -148,22 +145,18 @@ class ContactProblem:
         self._check_speeds()
         if not self.depths:
             raise InputError("no depth given", key="depths", allowed="at least one Delta/R")
-        previous = 0.0
+        previous, allowed = 0.0, f"Delta/R in (0, {RULES.deepest:g}]"
         for depth in self.depths:
-            if not previous < depth <= DEEPEST:
-                raise InputError(
-                    f"{depth:g}", key="depths", allowed=f"increasing Delta/R in (0, {DEEPEST:g}]"
-                )
+            if not previous < depth <= RULES.deepest:
+                raise InputError(f"{depth:g}", key="depths", allowed=f"increasing {allowed}")
             previous = depth
         for name in ("unload_from", "snapshots", "profiles"):
             for depth in getattr(self, name):
-                if not 0.0 < depth <= DEEPEST:
-                    raise InputError(f"{depth:g}", key=name, allowed=f"Delta/R in (0, {DEEPEST:g}]")
-        if not 0.0 <= self.radius_at_least <= 0.8:
-            raise InputError(f"{self.radius_at_least:g}", key="radius_at_least", allowed="0 to 0.8")
-
-        if not 0.0 <= self.friction <= 20.0:
-            raise InputError(f"{self.friction:g}", key="friction", allowed="0 to 20")
+                if not 0.0 < depth <= RULES.deepest:
+                    raise InputError(f"{depth:g}", key=name, allowed=allowed)
+        for name, most in (("radius_at_least", 0.8), ("friction", 20.0)):
+            if not 0.0 <= (value := getattr(self, name)) <= most:
+                raise InputError(f"{value:g}", key=name, allowed=f"0 to {most:g}")
 
     def _check_speeds(self) -> None:
         hurried = [body.flow and body.flow.rate for body in (self.pair.sphere, self.pair.flat)]

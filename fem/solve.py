@@ -125,20 +125,16 @@ class _Found:
 
 
 def _counters(tally: Tally) -> Counters:
-    timers = tally.timers
     return Counters(
+        **vars(tally.timers),
         dofs=tally.dofs,
         steps=tally.steps,
-        iterations=timers.iterations,
         factorisations=tally.factorisations,
         failed_steps=tally.failed,
         patterns=tally.patterns,
         meshes=tally.meshes,
         transfer_jump=tally.jump,
         cpu_s=time.process_time() - tally.started,
-        cpu_assembly_s=timers.assembly,
-        cpu_contact_s=timers.contact,
-        cpu_linear_s=timers.linear,
         peak_memory_mb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
     )
 

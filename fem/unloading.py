@@ -8,8 +8,9 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
-from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
+from .path import MOST_CUTS, PathPoint, Record, accept, extrapolate
 from .problem import ContactProblem
+from .rules import RULES
 from .solution import Curve, Unloading
 
 # limit: most steps of an unloading [-]
@@ -70,7 +71,7 @@ def _back(point: PathPoint, records: list[Record]) -> tuple[PathPoint, Outcome, 
             found = here.balanced(guess, delta)
             if found is not None:
                 break
-            step *= STEP_CUT
+            step *= RULES.step_cut
         steps += 1
         if found is None or steps > _UNLOADING_STEPS:
             stopped = Outcome(

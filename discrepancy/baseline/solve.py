@@ -76,11 +76,11 @@ def solved_table(
     """
     # loaded when there is something to solve: most diagnoses need none of it
     from ... import fem
-    from ...fem.problem import DEEPEST
+    from ...fem.rules import RULES as FEM
     from ...fitting.case_table import pair_table
 
     onset = pair.first_yield
-    last = min(RULES.solve_deeper * high, DEEPEST)
+    last = min(RULES.solve_deeper * high, FEM.deepest)
     if last < 2.0 * onset:
         raise InputError(f"Delta/R to {last:.2g}", key="depth",
                          allowed=f"well beyond first yield at {onset:.2g}")  # fmt: skip

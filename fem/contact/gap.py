@@ -78,37 +78,30 @@ def curve(t, shape, w):
 
 
 @njit(cache=True)
-def _slave_point(e, xs, w):
-    """Coordinates of the slave point of edge e whose weights are `w`."""
-    W = w.value
-    r = -W[0] * xs[1, 0] if e == 0 else W[0] * xs[e - 1, 0]
-    z = W[0] * xs[1 if e == 0 else e - 1, 1]
+def weighted(k, x, weights):
+    """Sum of the coordinates `x` of the four nodes about segment k, by their weights: r and z."""
+    first, side = (1, -1.0) if k == 0 else (k - 1, 1.0)
+    r = side * weights[0] * x[first, 0]
+    z = weights[0] * x[first, 1]
     for j in range(1, 4):
-        node = min(e - 1 + j, xs.shape[0] - 1)
-        r += W[j] * xs[node, 0]
-        z += W[j] * xs[node, 1]
+        node = min(k - 1 + j, x.shape[0] - 1)  # beyond the last node the weight is zero
+        r += weights[j] * x[node, 0]
+        z += weights[j] * x[node, 1]
     return r, z
 
 
 @njit(cache=True)
 def _below(r, k, xm, shape, w):
     """Place on master segment k at radius r, and the height of the curve there."""
-    W = w.value
-    W1 = w.first
-    last = xm.shape[0] - 2
-    r0 = -xm[1, 0] if k == 0 else xm[k - 1, 0]
-    z0 = xm[1, 1] if k == 0 else xm[k - 1, 1]
-    n = min(k + 2, last + 1)  # beyond the last node the weight is zero
     t = (r - xm[k, 0]) / (xm[k + 1, 0] - xm[k, 0])
     for _ in range(30):
         curve(t, shape[k], w)
-        f = W[0] * r0 + W[1] * xm[k, 0] + W[2] * xm[k + 1, 0] + W[3] * xm[n, 0] - r
-        d = W1[0] * r0 + W1[1] * xm[k, 0] + W1[2] * xm[k + 1, 0] + W1[3] * xm[n, 0]
-        t -= f / d
+        f = weighted(k, xm, w.value)[0] - r
+        t -= f / weighted(k, xm, w.first)[0]
         if abs(f) < 1e-15 * r:
             break
     curve(t, shape[k], w)
-    return t, W[0] * z0 + W[1] * xm[k, 1] + W[2] * xm[k + 1, 1] + W[3] * xm[n, 1]
+    return t, weighted(k, xm, w.value)[1]
 
 
 @njit(cache=True)
@@ -123,7 +116,7 @@ def find_gaps(s, xs, xm, points):
     for e in range(xs.shape[0] - 1):
         for q in range(3):
             curve(0.5 * (1.0 + POINTS[q]), s.slave_shape[e], w)
-            r, z = _slave_point(e, xs, w)
+            r, z = weighted(e, xs, w.value)
             while k < last and xm[k + 1, 0] < r:
                 k += 1
             while k > 0 and xm[k, 0] > r:

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from ...core.arrays import Array, Integers
-from .gap import Weights, curve, new_weights
+from .gap import Weights, curve, new_weights, weighted
 from .surfaces import POINTS
 
 LOCAL = 16
@@ -62,19 +62,8 @@ def new_room():
 @njit(cache=True)
 def frame_below(k, r, xm, w):
     """Return the master curve's frame on segment k at radius r; `w` are its weights there."""
-    mirrored = k == 0
-    first = 1 if mirrored else k - 1
-    sign = -1.0 if mirrored else 1.0
-    r1 = sign * w.first[0] * xm[first, 0]
-    r2 = sign * w.second[0] * xm[first, 0]
-    z1 = w.first[0] * xm[first, 1]
-    z2 = w.second[0] * xm[first, 1]
-    for j in range(1, 4):
-        node = min(k - 1 + j, xm.shape[0] - 1)
-        r1 += w.first[j] * xm[node, 0]
-        r2 += w.second[j] * xm[node, 0]
-        z1 += w.first[j] * xm[node, 1]
-        z2 += w.second[j] * xm[node, 1]
+    r1, z1 = weighted(k, xm, w.first)
+    r2, z2 = weighted(k, xm, w.second)
     slope = z1 / r1
     bend = (z2 - slope * r2) / r1
     length = xm[k + 1, 0] - xm[k, 0]

@@ -10,7 +10,7 @@ with heat (`flow`).
 from __future__ import annotations
 
 from . import lanes
-from .flow import FlowLaws, Law, law_of, no_laws
+from .flow import FlowLaws, laws_of, no_laws
 from .lanes import EXACT, RADIAL
 from .tensor import exponential, log_strain
 
@@ -18,10 +18,9 @@ __all__ = [
     "EXACT",
     "RADIAL",
     "FlowLaws",
-    "Law",
     "exponential",
     "lanes",
-    "law_of",
+    "laws_of",
     "log_strain",
     "no_laws",
 ]

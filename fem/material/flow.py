@@ -7,18 +7,27 @@ the length of the plastic increment, dp = sqrt(2/3) lambda.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from ...core.arrays import Array, Integers
+from ...core.flow import Flow, Heating, Rate
+from ...core.material import Material
 
 # limit: part of the strength that heat leaves at the least [-]; a metal at its melting point
 # keeps none: keeps the root defined
 _WEAKEST = 0.01
 
 NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
+_RATES = {
+    "cowper-symonds": COWPER_SYMONDS,
+    "johnson-cook": JOHNSON_COOK,
+    "overstress": OVERSTRESS,
+}
+_SLOW, _COLD = Rate("overstress", 1.0, 1.0), Heating(0.0, 1.0, 1.0)
 
 _ROOT = math.sqrt(2.0 / 3.0)
 # limit: size of the yield circle's radius to which its root is found [-]: ten units of the last
@@ -134,46 +143,62 @@ def no_laws() -> FlowLaws:
     return FlowLaws(np.empty((0, 3, 0)), np.empty(0, np.int64), *[none] * 5)
 
 
+def laws_of(bodies: Sequence[tuple[Material, float]], unit: float) -> FlowLaws:
+    """Laws of bodies that have one, each with its shear modulus [Pa]; `unit` is E' [Pa]."""
+    if not bodies:
+        return no_laws()
+    flows = [body.flow or Flow() for body, _ in bodies]
+    per_stress = [math.sqrt(2.0 / 3.0) / (2.0 * shear) for _, shear in bodies]
+    rates = [flow.rate or _SLOW for flow in flows]
+    heats = [flow.heating or _COLD for flow in flows]
+    most = max(2 if flow.curve is None else len(flow.curve.strain) for flow in flows)
+    return FlowLaws(
+        curve=np.array(
+            [_table(body, scale, most) for (body, _), scale in zip(bodies, per_stress, strict=True)]
+        ),
+        rate=np.array([_RATES[flow.rate.law] if flow.rate else NO_RATE for flow in flows]),
+        reference=np.array([rate.reference for rate in rates]),
+        number=np.array([rate.number for rate in rates]),
+        overstress=np.array([r.stress * s for r, s in zip(rates, per_stress, strict=True)]),
+        rise=np.array([h.fraction * unit / (h.capacity * h.range) for h in heats]),
+        exponent=np.array([h.exponent for h in heats]),
+    )
+
+
+def _table(body: Material, scale: float, rows: int) -> Array:
+    """Plastic strain, radius and slope by row, the last stress repeated up to so many rows."""
+    curve = body.flow.curve if body.flow else None
+    strain, stress, slope = (
+        ([0.0, 1.0], [body.Sy] * 2, [0.0] * 2)
+        if curve is None
+        else (list(curve.strain), list(curve.stress), list(curve.slope))
+    )
+    while len(strain) < rows:
+        strain.append(2.0 * strain[-1])
+        stress.append(stress[-1])
+        slope.append(0.0)
+    return np.array([strain, np.array(stress) * scale, np.array(slope) * scale])
+
+
 @njit(cache=True)
-def law_of(laws, k, stiffness, seconds):
-    """Law k of an unstrained point of the stiffness 2 G, in a step of so many seconds."""
-    return Law(
+def law_at(laws, k, strain, work, stiffness, seconds):
+    """Law k where a step starts from a plastic strain and work, and the radius at rest there."""
+    static, _ = table(laws.curve[k], strain)
+    law = Law(
         laws.rate[k],
         laws.reference[k],
         laws.number[k],
         laws.overstress[k],
         laws.rise[k],
         laws.exponent[k],
-        0.0,
-        0.0,
-        laws.curve[k, 1, 0],
+        strain,
+        work,
+        static,
         stiffness,
         seconds,
     )
-
-
-@njit(cache=True)
-def at_point(law, curve, strain, work):
-    """The law where a step starts from a plastic strain and work, and the radius at rest there."""
-    static, _ = table(curve, strain)
     soft, _ = softening(law, work)
-    rate, reference, number, overstress, rise, exponent, _, _, _, stiffness, seconds = law
-    return (
-        Law(
-            rate,
-            reference,
-            number,
-            overstress,
-            rise,
-            exponent,
-            strain,
-            work,
-            static,
-            stiffness,
-            seconds,
-        ),
-        static * soft,
-    )
+    return law, static * soft
 
 
 @njit(cache=True)

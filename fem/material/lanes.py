@@ -21,7 +21,7 @@ import math
 
 from numba import njit
 
-from .flow import at_point, circle_of, law_of
+from .flow import circle_of, law_at
 
 RADIAL = 0
 """Radial return (backward Euler)."""
@@ -252,10 +252,8 @@ def _circles(w, laws, seconds):
             w[DECAY + at] = math.exp(-length / R)
             continue
         k = int(w[LAW + at]) - 1
-        curve = laws.curve[k]
-        law = law_of(laws, k, w[G2 + at], seconds)
-        law, _ = at_point(law, curve, w[STRAIN + at], w[WORK + at])
-        found = circle_of(law, curve, w[J + at], R, (w[N + at], length, w[C + at]))
+        law, _ = law_at(laws, k, w[STRAIN + at], w[WORK + at], w[G2 + at], seconds)
+        found = circle_of(law, laws.curve[k], w[J + at], R, (w[N + at], length, w[C + at]))
         w[MEAN + at], w[END + at], w[DECAY + at] = found.mean, found.end, found.decay
         w[GAIN + at], w[DRIFT + at] = found.gain, found.drift
         w[SLIP + at], w[WORKED + at] = found.flow, found.worked
@@ -427,7 +425,7 @@ def tangents(w):
 def stresses(w, exact, laws, seconds):
     """Fill the rows from the trial to the stress; number of lanes that flow.
 
-    `exact`: 1, or 0 for the radial return; `laws` and `seconds` as in `flow.law_of`.
+    `exact`: 1, or 0 for the radial return; `laws` and `seconds` as in `flow.law_at`.
     """
     _principal(w)
     if not _logarithms(w):

@@ -51,22 +51,17 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
     The first is moved to the next rung below. `fine` and `coarse` are ring widths over radius in
     the zone, and beyond twice its neighbourhood.
     """
-    rung = math.log1p(fine) / RULES.ring_divisions
+    ring = RULES.ring_divisions
+    rung = math.log1p(fine) / ring
     first = math.floor(math.log(core / end) / rung)
-    low = max(
-        RULES.ring_divisions * math.floor(math.log(zone.low / end) / (rung * RULES.ring_divisions)),
-        first,
-    )
-    high = min(
-        RULES.ring_divisions * math.ceil(math.log(zone.high / end) / (rung * RULES.ring_divisions)),
-        0,
-    )
+    low = max(ring * math.floor(math.log(zone.low / end) / (rung * ring)), first)
+    high = min(ring * math.ceil(math.log(zone.high / end) / (rung * ring)), 0)
 
     def strides(start: int, stop: int, direction: int) -> list[int]:
-        k, stride, found = start, RULES.ring_divisions, []
+        k, stride, found = start, ring, []
         while k * direction < stop * direction:
             width = zone.allowed(end * math.exp(rung * k), fine=fine, coarse=coarse)
-            widest = max(RULES.ring_divisions, int(width / fine * RULES.ring_divisions * 1.001))
+            widest = max(ring, int(width / fine * ring * 1.001))
             stride = min(max(stride + 1, int(RULES.ring_growth * stride)), widest)
             k += direction * stride
             found.append(k)
@@ -77,7 +72,7 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
         return found
 
     inside = strides(low, first, -1)[::-1]
-    middle = [*range(low, high, RULES.ring_divisions), high]
+    middle = [*range(low, high, ring), high]
     rungs = np.array(inside + middle + strides(high, 0, 1), dtype=float)
     return np.asarray(end * np.exp(rung * rungs))
 

@@ -18,12 +18,8 @@ from ...core.arrays import Array
 from ..rules import RULES
 from .measure import Reading
 
-BEYOND = RULES.steps_beyond
-"""So many steps past the last depth make the fit there two-sided."""
-
-_ENOUGH = (
-    2 * RULES.harmonics + RULES.ripple_degree + 4
-)  # steps within the reach, else the raw value stands
+# steps within the reach, else the raw value stands
+_ENOUGH = 2 * RULES.harmonics + RULES.ripple_degree + 4
 _NAMES = ("force", "radius", "radius_last_node", "share")
 
 

@@ -13,16 +13,10 @@ import skfem
 
 from ...core.arrays import Array, Integers
 from ...fem.assemble import advance, bulk_forces
+from ...fem.discretise import geometry_of
 from ...fem.elements import Elements, State
 from ...fem.material import EXACT, no_laws
 
-_GAUSS = 0.5 / math.sqrt(3.0)
-_POINTS = np.array(
-    [
-        [0.5 - _GAUSS, 0.5 + _GAUSS, 0.5 + _GAUSS, 0.5 - _GAUSS],
-        [0.5 - _GAUSS, 0.5 - _GAUSS, 0.5 + _GAUSS, 0.5 + _GAUSS],
-    ]
-)
 _MOST_ITERATIONS = 30
 
 
@@ -51,29 +45,15 @@ class Block:
 
 def block(mesh: skfem.MeshQuad, *, nu: float, yield_strain: float = math.inf) -> Block:
     """Set up a body with E = 1 and Sy = `yield_strain`."""
-    basis = skfem.CellBasis(mesh, skfem.ElementQuad1(), quadrature=(_POINTS, np.full(4, 0.25)))
     n = mesh.t.shape[1]
     shear = 0.5 / (1.0 + nu)
-    r = np.asarray(basis.global_coordinates())[0]
-    dV = 2.0 * math.pi * r * basis.dx
-    grad = np.stack([np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)], axis=2)
-    value = np.stack(
-        [np.broadcast_to(np.asarray(basis.basis[a][0]), (n, 4))[0] for a in range(4)], axis=1
-    )
     return Block(
         mesh=mesh,
         elements=Elements(
-            conn=np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),
-            grad=np.ascontiguousarray(grad),
-            value=np.ascontiguousarray(value),
-            r=r,
-            dV=dV,
-            volume=dV.sum(axis=1),
+            **geometry_of(mesh),
             G=np.full(n, shear),
             K=np.full(n, 1.0 / (3.0 * (1.0 - 2.0 * nu))),
             radius=np.full(n, math.sqrt(2.0 / 3.0) * yield_strain / (2.0 * shear)),
-            stiffness=np.empty((0, 8, 8)),
-            linear=np.full(n, -1),
             law=np.full(n, -1),
             laws=no_laws(),
         ),

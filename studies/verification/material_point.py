@@ -9,9 +9,8 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.material import Material
-from ...fem.laws import laws_of
-from ...fem.material import EXACT, FlowLaws, exponential, lanes, law_of, no_laws
-from ...fem.material.flow import at_point
+from ...fem.material import EXACT, FlowLaws, exponential, lanes, laws_of, no_laws
+from ...fem.material.flow import law_at
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
 
@@ -77,8 +76,7 @@ class MaterialPoint:
         rows[lanes.G2 // lanes.L], radius[:] = 2.0 * self.G, 1.0
         radius[_LANE], law[_LANE] = min(self._radius, 1e30), self._law
         if self._law:
-            law_here = law_of(self._laws, 0, 0.0, math.inf)
-            _, radius[_LANE] = at_point(law_here, self._laws.curve[0], self.strain, self.work)
+            _, radius[_LANE] = law_at(self._laws, 0, self.strain, self.work, 0.0, math.inf)
         rows[lanes.STRAIN // lanes.L, _LANE] = self.strain
         rows[lanes.WORK // lanes.L, _LANE] = self.work
         lanes.stresses(w, float(self.rule == EXACT), self._laws, self.seconds)

@@ -55,7 +55,6 @@ def main() -> None:
     solver._direction(now)
     matrix, rhs = solver.system._matrix, np.ones(solver.system.n)
     factors, fronts = superlu(matrix), solver.system._fronts
-    assert fronts is not None
     mesh = skfem.MeshQuad(grid.mesh.points.T.copy(), grid.mesh.quads.T.copy())
     basis = skfem.CellBasis(mesh, skfem.ElementVector(skfem.ElementQuad1()), intorder=2)
     form = linear_elasticity(*lame_parameters(1.0, 0.3))
