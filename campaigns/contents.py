@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
+from ..core.inputs.input_file import read_bytes
 
 # limit: largest text in one [bytes]: a specification takes some thousand
 _TEXT_BYTES = 1_000_000
@@ -34,10 +35,10 @@ SEALED_FROM = 512
 DIGEST = "digest"
 """What holds the digest of a case's tree without this name: a column of a part."""
 
-DAMAGE = (
+# what reading a file raises that was sealed by somebody who meant ill, or by a fault of ours
+_DAMAGE = (
     ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
 )  # fmt: skip
-"""What reading a file raises that was sealed by somebody who meant ill, or by a fault of ours."""
 
 _MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
 _LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
@@ -85,9 +86,22 @@ def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
         )
 
 
-def damage(error: Exception) -> str:
-    """Return the words of an error in one line."""
-    return f"damaged ({' '.join(str(error).split())[:200] or type(error).__name__})"
+@contextmanager
+def opened(path: Path, *, most: int, kind: str, remedy: str = "") -> Iterator[h5py.File]:
+    """Open a sealed file of so many bytes at most, or refuse one of which a byte has changed.
+
+    `kind` is what is wanted in words, `remedy` what to do about a damaged one.
+    """
+    image = read_bytes(path, most=most, allowed=kind)
+    check_seal(image, path, allowed=remedy)
+    try:
+        with open_image(image) as file:
+            yield file
+    except InputError:
+        raise
+    except _DAMAGE as error:
+        told = " ".join(str(error).split())[:200] or type(error).__name__
+        raise InputError(f"damaged ({told})", source=str(path), allowed=remedy) from None
 
 
 def open_image(image: bytes) -> h5py.File:

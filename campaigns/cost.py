@@ -111,26 +111,16 @@ def pace_of_this_machine() -> float:
 
     It factorises a sparse matrix of the size of a case's, which is half of a case's work.
     """
-    times = []
-    matrix = _laplacian(120)
-    for _ in range(5):
-        started = time.perf_counter()
-        _factorise(matrix)
-        times.append(time.perf_counter() - started)
-    return float(np.median(times)) / _REFERENCE_S
-
-
-def _laplacian(n: int) -> object:
     from scipy import sparse
-
-    line = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n))
-    return sparse.csc_array(sparse.kronsum(line, line))
-
-
-def _factorise(matrix: object) -> None:
     from scipy.sparse.linalg import splu
 
-    splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    line = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(120, 120))
+    matrix, times = sparse.csc_array(sparse.kronsum(line, line)), []
+    for _ in range(5):
+        started = time.perf_counter()
+        splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        times.append(time.perf_counter() - started)
+    return float(np.median(times)) / _REFERENCE_S
 
 
 def _measured(case: Case) -> float:

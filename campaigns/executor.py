@@ -40,6 +40,11 @@ class Ended:
     message: str = ""
     computed_by: Mapping[str, str] | None = None
 
+    @property
+    def done(self) -> bool:
+        """Whether its solution is complete."""
+        return self.solution is not None and self.solution.outcome.completed
+
 
 class Executor(Protocol):
     """What the campaign needs of a place to compute."""

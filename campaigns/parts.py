@@ -30,16 +30,7 @@ from ..core.errors import InputError
 from ..core.inputs.input_file import read_bytes
 from ..core.provenance import canonical_json
 from .case import Case
-from .contents import (
-    DAMAGE,
-    DIGEST,
-    Tree,
-    check_seal,
-    damage,
-    new_image,
-    open_image,
-    read_array,
-)
+from .contents import DIGEST, Tree, new_image, opened, read_array
 from .records import CaseRecord, UnloadingRecord
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -84,6 +75,7 @@ TEXTS: dict[str, str] = {
     "counters": "work that the solve took, JSON",
     "mesh": "digest of the mesh",
 }
+_JSON = ("specification", "accuracy", "environment", "counters")
 _UNLOADING: dict[str, Dataset] = {
     "depth": Dataset("1", ("row",), "Delta/R from which it unloads"),
     "residual_sphere": Dataset("m", ("row",), "permanent displacement of the sphere's pole"),
@@ -122,7 +114,9 @@ def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
         rows = list(enumerate(records))
         _put_table(file, "loading", "case", [(k, r.curve) for k, r in rows], CURVE)
         unloadings = [(k, u) for k, r in rows for u in r.unloadings]
-        scalars: list[tuple[int, Columns]] = [(k, _of_unloading(u)) for k, u in unloadings]
+        scalars = [
+            (k, {name: np.array([getattr(u, name)]) for name in _UNLOADING}) for k, u in unloadings
+        ]
         _put_table(file, "unloadings", "case", scalars, _UNLOADING, precision="f8")
         flat = list(enumerate(u for _, u in unloadings))
         _put_table(file, "unloading_curves", "unloading", [(k, u.curve) for k, u in flat], CURVE)
@@ -145,19 +139,10 @@ def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
 @contextmanager
 def opened_part(path: Path) -> Iterator[h5py.File]:
     """Open a part, or refuse one of which a byte has changed."""
-    image = read_bytes(path, most=_READ_PART_BYTES, allowed="a published part")
-    check_seal(image, path)
-    try:
-        with open_image(image) as file:
-            if file.attrs.get("format") != PART_FORMAT:
-                raise InputError(
-                    f"format {file.attrs.get('format')!r}", source=str(path), allowed=PART_FORMAT
-                )
-            yield file
-    except InputError:
-        raise
-    except DAMAGE as error:
-        raise InputError(damage(error), source=str(path)) from None
+    with opened(path, most=_READ_PART_BYTES, kind="a published part") as file:
+        if (found := file.attrs.get("format")) != PART_FORMAT:
+            raise InputError(f"format {found!r}", source=str(path), allowed=PART_FORMAT)
+        yield file
 
 
 def read_part(path: Path) -> list[CaseRecord]:
@@ -205,15 +190,9 @@ def digest_of(record: CaseRecord) -> str:
         **{f"unload-{k}": u.curve | u.profiles for k, u in enumerate(record.unloadings)},
     }
     about = {
-        "id": record.id,
         "specification": record.case.specification(),
-        "status": record.status,
-        "message": record.message,
         "unloadings": [(u.depth, u.residual_sphere, u.residual_flat) for u in record.unloadings],
-        "counters": record.counters,
-        "accuracy": record.accuracy,
-        "environment": record.environment,
-        "mesh": record.mesh,
+        **{name: value for name, value in vars(record).items() if name in TEXTS},
     }
     groups = {
         name: Tree(arrays=dict(columns), units=dict.fromkeys(columns, ""))
@@ -228,19 +207,12 @@ def texts_of(file: h5py.File, name: str) -> list[str]:
 
 
 def _put_cases(group: h5py.Group, records: Sequence[CaseRecord]) -> None:
-    texts = {
-        "id": [r.id for r in records],
-        "name": [r.case.name for r in records],
-        "status": [r.status for r in records],
-        "message": [r.message for r in records],
-        "specification": [json.dumps(r.case.specification()) for r in records],
-        "accuracy": [json.dumps(r.accuracy) for r in records],
-        "environment": [json.dumps(r.environment) for r in records],
-        "counters": [json.dumps(r.counters) for r in records],
-        "mesh": [r.mesh for r in records],
-    }
+    told = [
+        {**vars(r), "name": r.case.name, "specification": r.case.specification()} for r in records
+    ]
     for name, meaning in TEXTS.items():
-        values = np.array([text.encode() for text in texts[name]])
+        texts = [json.dumps(one[name]) if name in _JSON else one[name] for one in told]
+        values = np.array([text.encode() for text in texts])
         if values.dtype.itemsize == 0:  # all empty: HDF5 has no strings of length nought
             values = values.astype("S1")
         data = _put(group, name, values)
@@ -252,28 +224,13 @@ def _put_cases(group: h5py.Group, records: Sequence[CaseRecord]) -> None:
 
 def _scalars(record: CaseRecord) -> dict[str, float]:
     pair = record.case.pair
-    return {
-        "E_s": pair.sphere.E,
-        "nu_s": pair.sphere.nu,
-        "Sy_s": pair.sphere.Sy,
-        "E_f": pair.flat.E,
-        "nu_f": pair.flat.nu,
-        "Sy_f": pair.flat.Sy,
-        "R": pair.R,
-        "E_reduced": pair.E_reduced,
-        "Sy_min": pair.Sy_min,
-        "Sy_ratio": pair.Sy_ratio,
-        "critical_depth": pair.first_yield,
-        **asdict(record.quality),
+    bodies = {
+        f"{name}_{end}": getattr(body, name)
+        for end, body in (("s", pair.sphere), ("f", pair.flat))
+        for name in ("E", "nu", "Sy")
     }
-
-
-def _of_unloading(unloading: UnloadingRecord) -> Columns:
-    return {
-        "depth": np.array([unloading.depth]),
-        "residual_sphere": np.array([unloading.residual_sphere]),
-        "residual_flat": np.array([unloading.residual_flat]),
-    }
+    both = {name: getattr(pair, name) for name in ("R", "E_reduced", "Sy_min", "Sy_ratio")}
+    return bodies | both | {"critical_depth": pair.first_yield} | asdict(record.quality)
 
 
 def _states(profiles: Columns) -> list[Columns]:
@@ -323,24 +280,21 @@ def _describe(data: h5py.Dataset, about: Dataset) -> None:
 
 
 def _read_records(file: h5py.File) -> list[CaseRecord]:
-    texts = {name: texts_of(file, name) for name in TEXTS}
+    texts: dict[str, list[Any]] = {
+        name: list(map(json.loads, texts_of(file, name))) if name in _JSON else texts_of(file, name)
+        for name in TEXTS
+    }
     n = len(texts["id"])
     curves = _split(file["loading"], "case", n, CURVE)
     unloadings = _read_unloadings(file, n)
     profiles = _read_profiles(file, n)
     return [
         CaseRecord(
-            id=texts["id"][k],
-            case=Case.from_specification(json.loads(texts["specification"][k])),
-            status=texts["status"][k],
-            message=texts["message"][k],
+            case=Case.from_specification(texts["specification"][k]),
             curve=curves[k],
             unloadings=tuple(unloadings[k]),
             profiles=profiles[k],
-            counters=json.loads(texts["counters"][k]),
-            accuracy=json.loads(texts["accuracy"][k]),
-            environment=json.loads(texts["environment"][k]),
-            mesh=texts["mesh"][k],
+            **{name: texts[name][k] for name in CaseRecord.__annotations__ if name in TEXTS},
         )
         for k in range(n)
     ]
@@ -358,11 +312,9 @@ def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
     for k in range(count):
         out[owner[k]].append(
             UnloadingRecord(
-                depth=float(scalars["depth"][k]),
                 curve=curves[k],
-                residual_sphere=float(scalars["residual_sphere"][k]),
-                residual_flat=float(scalars["residual_flat"][k]),
                 profiles={**craters[k], **tips[k]},
+                **{name: float(values[k]) for name, values in scalars.items()},
             )
         )
     return out

@@ -19,17 +19,18 @@ def read_curves(path: Path) -> list[CaseRecord]:
     the same pair would otherwise come twice. Refused where there is nothing, or it is damaged.
     """
     if (path / CHECKSUMS).exists():
-        done = read_published(path)
+        found = read_published(path)
     elif path.is_dir():
-        done = [record for record in Store(path).read_all() if record.status == "done"]
+        found = Store(path).read_all()
     elif not path.exists():
         raise InputError(
             "no such file", source=str(path), allowed="the folder of a run, or a published part"
         )
     elif is_part(path):
-        done = [record for record in read_part(path) if record.status == "done"]
+        found = read_part(path)
     else:
-        done = [record for record in (read_case_file(path),) if record.status == "done"]
+        found = [read_case_file(path)]
+    done = [record for record in found if record.status == "done"]
     return [record for record in done if record.id == record.case.id] or done
 
 

@@ -100,8 +100,7 @@ def run_design(
         for ended in endings:
             case, solution = cases[ended.id], ended.solution
             store.put(case, solution, message=ended.message, computed_by=ended.computed_by)
-            good = solution is not None and solution.outcome.completed
-            stored[ended.id] = "done" if good else "failed"
+            stored[ended.id] = "done" if ended.done else "failed"
             if report is not None:
                 report(_step(case, ended, _counts(cases, stored)))
             if time.monotonic() > until:
@@ -113,8 +112,8 @@ def _step(case: Case, ended: Ended, status: Status) -> Step:
     solution = ended.solution
     if solution is None:
         return Step(case, False, ended.message, 0.0, status)
-    good = solution.outcome.completed
-    return Step(case, good, "" if good else str(solution.outcome), solution.counters.cpu_s, status)
+    message = "" if ended.done else str(solution.outcome)
+    return Step(case, ended.done, message, solution.counters.cpu_s, status)
 
 
 def _counts(cases: Mapping[str, Case], stored: Mapping[str, str]) -> Status:

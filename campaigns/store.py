@@ -21,12 +21,11 @@ import h5py
 
 from ..core.disk import DISK
 from ..core.errors import InputError
-from ..core.inputs.input_file import read_bytes
 from ..core.output import NO_ROOM, write_file
 from ..fem import Solution
 from .case import Case
 from .case_file import case_image, write_fields
-from .contents import DAMAGE, check_seal, damage, open_image
+from .contents import opened
 from .records import CaseRecord, Summary, read_case, read_summary
 from .schema import FORMAT
 
@@ -171,17 +170,11 @@ def _status(path: Path) -> str:
 @contextmanager
 def opened_case(path: Path) -> Iterator[h5py.File]:
     """Open a case's file, or refuse one of which a byte has changed."""
-    image = read_bytes(path, most=_CASE_BYTES, allowed="a file of one case (.h5)")
-    check_seal(image, path, allowed=_REPAIR)
-    try:
-        with open_image(image) as file:
-            if file.attrs.get("format") != FORMAT:
-                _refuse_file(path, file.attrs.get("format"))
-            yield file
-    except InputError:
-        raise
-    except DAMAGE as error:
-        raise InputError(damage(error), source=str(path), allowed=_REPAIR) from None
+    kind = "a file of one case (.h5)"
+    with opened(path, most=_CASE_BYTES, kind=kind, remedy=_REPAIR) as file:
+        if file.attrs.get("format") != FORMAT:
+            _refuse_file(path, file.attrs.get("format"))
+        yield file
 
 
 def read_case_file(path: Path) -> CaseRecord:

@@ -7,32 +7,27 @@ from functools import cache
 import numpy as np
 
 from ... import fem
+from ...core.arrays import Array
 from ...core.material import Pair
 from ..case import Case, standard_case
-from .pairs import deep_case, digits, pair_of, widest_pair
+from .pairs import deep_case, digits, pair_of, sobol, widest_pair
 
 
 @cache
 def survey() -> tuple[Case, ...]:
     """64 scrambled Sobol points over the ranges of `space`, at twice its element size."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(64)).random_base2(6)
     return tuple(
         deep_case(f"survey-{k:02}", _drawn_pair(u), accuracy=fem.Accuracy.quick())
-        for k, u in enumerate(points)
+        for k, u in enumerate(sobol(6, seed=64, power=6))
     )
 
 
 @cache
 def space() -> tuple[Case, ...]:
     """256 scrambled Sobol points; in every fourth the two moduli are equal."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(20141)).random_base2(8)
     return tuple(
         deep_case(f"space-{k:03}", _drawn_pair(u, equal_moduli=k % 4 == 0))
-        for k, u in enumerate(points)
+        for k, u in enumerate(sobol(6, seed=20141, power=8))
     )
 
 
@@ -49,9 +44,7 @@ def validation() -> tuple[Case, ...]:
 @cache
 def near_equal() -> tuple[Case, ...]:
     """128 scrambled Sobol points at Sy* 0.75 to 1.35, where the share jumps; both nu free."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(20142)).random_base2(7)
+    points = sobol(6, seed=20142, power=7)
     return tuple(deep_case(f"near-equal-{k:03}", _near_pair(u)) for k, u in enumerate(points))
 
 
@@ -70,7 +63,7 @@ def validation_2() -> tuple[Case, ...]:
     return tuple(deep_case(f"validation-2-{k:02}", pair) for k, pair in enumerate(pairs))
 
 
-def _near_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+def _near_pair(u: Array) -> Pair:
     """Pair from six numbers in [0, 1) as `_drawn_pair`, but by Sy* 0.75-1.35, E'/Sy 150-3300."""
     E_s, E_f = (digits(50.0 + 250.0 * x) for x in u[:2])
     ratio = digits(0.75 * 1.8 ** u[2])
@@ -80,11 +73,11 @@ def _near_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
     return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
 
 
-def _soft_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+def _soft_pair(u: Array) -> Pair:
     return _drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0))
 
 
-def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> list[Pair]:
+def _for_judging(draw: Array) -> list[Pair]:
     """Half of the pairs anywhere, a third at the steep part, the others of soft, strong bodies."""
     half, most = len(draw) // 2, 5 * len(draw) // 6
     pairs = [_drawn_pair(u) for u in draw[:half]]
@@ -111,7 +104,7 @@ def challenge_cases(digest: str) -> tuple[Case, ...]:
 
 
 def _drawn_pair(
-    u: np.ndarray[tuple[int], np.dtype[np.float64]],
+    u: Array,
     *,
     moduli: tuple[float, float] = (50.0, 300.0),
     strengths: tuple[float, float] = (50.0, 1100.0),
@@ -129,16 +122,13 @@ def _drawn_pair(
     )
 
 
+def robust_case(name: str, pair: Pair) -> Case:
+    """Case that shows whether the solver bears a pair: 24 depths at medium resolution."""
+    return standard_case(name, pair, deepest=0.1, n_depths=24, accuracy=fem.Accuracy.quick())
+
+
 @cache
 def robustness() -> tuple[Case, ...]:
     """300 scrambled Sobol points over all that the solver is meant for, at medium resolution."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(5, scramble=True, rng=np.random.default_rng(300)).random_base2(9)[:300]
-    return tuple(
-        standard_case(
-            f"robustness-{k:03}", widest_pair(u), deepest=0.1, n_depths=24,
-            accuracy=fem.Accuracy.quick(),
-        )
-        for k, u in enumerate(points)
-    )  # fmt: skip
+    points = sobol(5, seed=300, power=9)[:300]
+    return tuple(robust_case(f"robustness-{k:03}", widest_pair(u)) for k, u in enumerate(points))

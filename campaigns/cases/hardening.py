@@ -12,11 +12,12 @@ from functools import cache
 
 import numpy as np
 
-from ... import fem
+from ...core.arrays import Array
 from ...core.flow import Flow, FlowCurve, ludwik, swift, voce
 from ...core.material import Material, Pair
-from ..case import Case, standard_case
-from .pairs import deep_case, digits, widest_pair
+from ..case import Case
+from .drawn import robust_case
+from .pairs import deep_case, digits, sobol, two_metals, widest_pair
 
 _YIELD_STRAINS = (3e-4, 6e-3)  # soft copper and aluminium to spring steel and titanium
 _RATIOS = (0.1, 10.0)  # Sy*
@@ -26,9 +27,7 @@ _LARGEST_EXPONENT = 0.5
 @cache
 def hardening() -> tuple[Case, ...]:
     """96 scrambled Sobol points; in a third one body alone hardens, the sphere or the flat."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(8, scramble=True, rng=np.random.default_rng(20143)).random_base2(7)[:96]
+    points = sobol(8, seed=20143, power=7)[:96]
     return tuple(deep_case(f"hardening-{k:02}", _pair(u, k)) for k, u in enumerate(points))
 
 
@@ -46,19 +45,13 @@ def robustness_hardening() -> tuple[Case, ...]:
     The curve of each body is a power of the strain with n 0.02 to 0.6, Ludwik's with K/Sy 0.1 to 5,
     or Voce's with Q/Sy 0.1 to 5.
     """
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(9, scramble=True, rng=np.random.default_rng(1952)).random_base2(8)[:200]
+    points = sobol(9, seed=1952, power=8)[:200]
     return tuple(
-        standard_case(
-            f"robustness-hardening-{k:03}", _any_pair(u), deepest=0.1, n_depths=24,
-            accuracy=fem.Accuracy.quick(),
-        )
-        for k, u in enumerate(points)
-    )  # fmt: skip
+        robust_case(f"robustness-hardening-{k:03}", _any_pair(u)) for k, u in enumerate(points)
+    )
 
 
-def _any_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+def _any_pair(u: Array) -> Pair:
     """Pair from nine numbers in [0, 1): five of `widest_pair`, two of each curve."""
     pair = widest_pair(u[:5])
     return replace(
@@ -88,23 +81,16 @@ def power_law(body: Material, n: float) -> Material:
     return replace(body, flow=Flow(curve=swift(Sy=body.Sy, K=K, n=n)))
 
 
-def _pair(u: np.ndarray[tuple[int], np.dtype[np.float64]], k: int) -> Pair:
+def _pair(u: Array, k: int) -> Pair:
     """Pair from eight numbers in [0, 1): moduli and Poisson ratios linear, exponents linear,
     yield strain of the weaker body and Sy* logarithmic; in every third one body alone hardens.
     """  # noqa: D205
-    E_s, E_f = (digits(50.0 + 250.0 * x) * 1e9 for x in u[:2])
-    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[2:4])
     strain = _YIELD_STRAINS[0] * (_YIELD_STRAINS[1] / _YIELD_STRAINS[0]) ** u[4]
     ratio = digits(_RATIOS[0] * (_RATIOS[1] / _RATIOS[0]) ** u[5])
     n_s, n_f = (round(float(_LARGEST_EXPONENT * x), 3) for x in u[6:])
-    if k % 6 == 4:
-        n_f = 0.0
-    elif k % 6 == 5:
-        n_s = 0.0
-    weaker = digits(strain * (E_s if ratio < 1.0 else E_f))
-    Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
-    return Pair(
-        sphere=power_law(Material(E=E_s, nu=nu_s, Sy=Sy_s), n_s),
-        flat=power_law(Material(E=E_f, nu=nu_f, Sy=Sy_f), n_f),
-        R=1e-3,
+    pair = two_metals(u[:4], strain=strain, ratio=ratio)
+    return replace(
+        pair,
+        sphere=power_law(pair.sphere, 0.0 if k % 6 == 5 else n_s),
+        flat=power_law(pair.flat, 0.0 if k % 6 == 4 else n_f),
     )

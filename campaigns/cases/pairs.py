@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import fem
+from ...core.arrays import Array
 from ...core.material import Material, Pair
 from ..case import Case, standard_case
 
@@ -26,7 +27,7 @@ def pair_of(
     )
 
 
-def widest_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+def widest_pair(u: Array) -> Pair:
     """Pair of any metals that the solver is meant for, from five numbers in [0, 1).
 
     E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20 and E'/Sy_min 20 to 4000.
@@ -47,6 +48,26 @@ def widest_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
         sphere=replace(pair.sphere, Sy=pair.sphere.Sy / 1e6 * strength),
         flat=replace(pair.flat, Sy=pair.flat.Sy / 1e6 * strength),
     )
+
+
+def sobol(dimensions: int, *, seed: int, power: int) -> Array:
+    """2^power scrambled Sobol points of [0, 1), shape (2^power, dimensions)."""
+    from scipy.stats import qmc
+
+    rng = np.random.default_rng(seed)
+    return np.asarray(qmc.Sobol(dimensions, scramble=True, rng=rng).random_base2(power))
+
+
+def two_metals(u: Array, *, strain: float, ratio: float) -> Pair:
+    """Pair from four numbers in [0, 1), yield strain of the weaker body and Sy*; R = 1 mm.
+
+    Moduli 50 to 300 GPa and Poisson ratios 0.2 to 0.45 are linear in the numbers.
+    """
+    E_s, E_f = (digits(50.0 + 250.0 * x) * 1e9 for x in u[:2])
+    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[2:])
+    weaker = digits(strain * (E_s if ratio < 1.0 else E_f))
+    Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
+    return Pair(Material(E=E_s, nu=nu_s, Sy=Sy_s), Material(E=E_f, nu=nu_f, Sy=Sy_f), R=1e-3)
 
 
 def digits(x: float) -> float:

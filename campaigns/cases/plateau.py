@@ -18,7 +18,7 @@ from ...core.arrays import Array
 from ...core.flow import Flow, FlowCurve, tabulated
 from ...core.material import Material, Pair
 from ..case import Case
-from .pairs import deep_case, digits
+from .pairs import deep_case, digits, sobol, two_metals
 
 _YIELD_STRAINS = (4e-4, 4e-3)
 _RATIOS = (0.1, 10.0)  # Sy*
@@ -55,9 +55,7 @@ STAINLESS_304L = (
 @cache
 def plateau() -> tuple[Case, ...]:
     """48 scrambled Sobol points; in a third one body alone has a flow curve."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(14, scramble=True, rng=np.random.default_rng(20144)).random_base2(6)[:48]
+    points = sobol(14, seed=20144, power=6)[:48]
     return tuple(deep_case(f"plateau-{k:02}", _pair(u, k)) for k, u in enumerate(points))
 
 
@@ -91,16 +89,13 @@ def _pair(u: Array, k: int) -> Pair:
     """Pair from 14 numbers in [0, 1): moduli and Poisson ratios linear, yield strain of the weaker
     body and Sy* logarithmic, then four of each curve; in every third one body alone has a curve.
     """  # noqa: D205
-    E_s, E_f = (digits(50.0 + 250.0 * x) * 1e9 for x in u[:2])
-    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[2:4])
     strain, ratio = _between(_YIELD_STRAINS, u[4]), _between(_RATIOS, u[5])
-    weaker = digits(strain * (E_s if ratio < 1.0 else E_f))
-    Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
-    sphere, flat = Material(E=E_s, nu=nu_s, Sy=Sy_s), Material(E=E_f, nu=nu_f, Sy=Sy_f)
-    return Pair(
-        sphere=sphere if k % 6 == 5 else _with_curve(sphere, _curve(Sy_s, u[6:10])),
-        flat=flat if k % 6 == 4 else _with_curve(flat, _curve(Sy_f, u[10:])),
-        R=1e-3,
+    pair = two_metals(u[:4], strain=strain, ratio=ratio)
+    sphere, flat = pair.sphere, pair.flat
+    return replace(
+        pair,
+        sphere=sphere if k % 6 == 5 else _with_curve(sphere, _curve(sphere.Sy, u[6:10])),
+        flat=flat if k % 6 == 4 else _with_curve(flat, _curve(flat.Sy, u[10:])),
     )
 
 
