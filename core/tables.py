@@ -1,4 +1,4 @@
-"""Rows as a data frame, and as a table of a notebook."""
+"""Rows as a data frame, and as tables of text."""
 
 from __future__ import annotations
 
@@ -39,6 +39,13 @@ def text_table(rows: Sequence[Sequence[str]], *, numbers: bool = False) -> str:
         ).rstrip()
         for row in rows
     )  # fmt: skip
+
+
+def markdown(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows, the head first, as a table in Markdown."""
+    head, *rest = rows
+    lines = [head, ["---"] * len(head), *rest]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def html_table(head: Sequence[str], rows: Iterable[Sequence[str]], *, title: str = "") -> str:

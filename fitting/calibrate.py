@@ -107,8 +107,12 @@ def within(calibration: Calibration, found: dict[str, Misses]) -> dict[str, tupl
     """Shares of the errors within one and two standard deviations, by quantity."""
     result = {}
     for weights, name in zip(calibration.weights, Uncertainty._fields, strict=True):
-        ratio = np.abs(found[name].off) / deviation(
-            found[name].features, weights, least=RULES.element_noise
-        )
-        result[name] = (float(np.mean(ratio <= 1.0)), float(np.mean(ratio <= 2.0)))
+        stated = deviation(found[name].features, weights, least=RULES.element_noise)
+        result[name] = shares_within(found[name].off, stated)
     return result
+
+
+def shares_within(off: Array, stated: Array) -> tuple[float, float]:
+    """Shares of errors within one and two of their stated deviations."""
+    ratio = np.abs(off) / stated
+    return float(np.mean(ratio <= 1.0)), float(np.mean(ratio <= 2.0))

@@ -16,7 +16,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ..core.arrays import Array
 from ..models.closed_form import Coefficients, PairNumbers, of_pair
 from ..models.correction import CHANNELS, PairCorrection, bumps, coordinates, moved
-from .prediction import Prediction, given_back, predict_by
+from .prediction import Prediction, misfit, predict_by
 from .rules import RULES
 from .table import ResidualTable, Table
 
@@ -81,26 +81,15 @@ class _Rows(NamedTuple):
     def misfit(self, shifts: Any) -> tuple[Any, Any]:
         """Misfits in their units of loading, shape (3, n), and of unloading, shape (4, n)."""
         p = predict_by(moved(self.numbers, shifts), self.table, self.turns)
-        t, u = self.table, self.turns
-        known = np.isfinite(u.exponent)
-        loading = np.stack(
-            [
-                np.where(t.edge_seen, np.log(p.force / t.force), 0.0) / self.unit_F,
-                np.where(t.edge_seen, np.log(p.radius / t.radius), 0.0) / self.unit_a,
-                (p.share - t.share) / RULES.unit,
-            ]
-        )
-        unit_left = RULES.unit_left[0] + RULES.unit_left[1] * u.total
-        exponent = np.where(known, u.exponent, 0.0)
-        unloading = np.stack(
-            [
-                (p.total - u.total) / unit_left,
-                (p.sphere - u.sphere_part * u.total) / (10.0 * RULES.unit_left[0]),
-                np.where(known, p.exponent - exponent, 0.0) / RULES.unit_exponent,
-                np.where(known, np.log(given_back(p, u)), 0.0) / RULES.unit_back,
-            ]
-        )
-        return loading, unloading
+        (F, a, share), (total, sphere, exponent, back) = misfit(p, self.table, self.turns)
+        unit_left = RULES.unit_left[0] + RULES.unit_left[1] * self.turns.total
+        return (
+            np.stack([F / self.unit_F, a / self.unit_a, share / RULES.unit]),
+            np.stack([
+                total / unit_left, sphere / (10.0 * RULES.unit_left[0]),
+                exponent / RULES.unit_exponent, back / RULES.unit_back,
+            ]),
+        )  # fmt: skip
 
     def cost(self, shifts: Array) -> float:
         """Sum of the squares, of outliers less; infinite where a curve can't be drawn."""
@@ -119,15 +108,15 @@ class _Rows(NamedTuple):
             slopes.append([np.imag(part) / 1e-30 for part in self.misfit(at)])
         matrix, gradient = np.zeros((cases, k, k)), np.zeros((cases, k))
         cases_of = (self.table.case, self.turns.case)
-        for side, (misfit, number) in enumerate(zip(self.misfit(shifts), cases_of, strict=True)):
+        for side, (off, number) in enumerate(zip(self.misfit(shifts), cases_of, strict=True)):
             slope = np.stack([s[side] for s in slopes])  # (k, quantities, rows)
-            weight = 1.0 / np.sqrt(1.0 + (misfit / RULES.outlier) ** 2)
+            weight = 1.0 / np.sqrt(1.0 + (off / RULES.outlier) ** 2)
             for case in np.unique(number):
                 m = number == case
                 J = slope[:, :, m].reshape(k, -1)
                 w = weight[:, m].ravel()
                 matrix[case] += (J * w) @ J.T
-                gradient[case] += (J * w) @ misfit[:, m].ravel()
+                gradient[case] += (J * w) @ off[:, m].ravel()
         return matrix, gradient
 
 

@@ -19,7 +19,7 @@ from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
 from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START
-from .prediction import Errors, errors_of, given_back, predict
+from .prediction import Errors, errors_of, misfit, predict
 from .ripple import ripple_of
 from .rules import RULES
 from .table import ResidualTable, Table
@@ -99,30 +99,19 @@ def _regress(
 
 
 def _misfit_of(table: Table, turns: ResidualTable) -> Callable[[Any], Any]:
-    """Weighted misfit, form minus data.
-
-    Of ln F, ln a, share, residual depth, the sphere's residual, exponent, ln of the energy back.
-    """
-    known = np.isfinite(turns.exponent)
-    exponent = np.where(known, turns.exponent, 0.0)
+    """What `prediction.misfit` says, in its units, as a function of the coefficients."""
     # a case whose mesh ripples says less about the curve than one that does not
     unit_F, unit_a = (np.hypot(RULES.form_unit, ripple) for ripple in ripple_of(table))
+    unit = RULES.form_unit
+    units = (unit_F, unit_a, unit, unit, unit, RULES.form_unit_exponent, RULES.form_unit_back)
 
-    def misfit(x: Any) -> Any:
-        p = predict(x, table, turns)
+    def scaled(x: Any) -> Any:
+        loading, unloading = misfit(predict(x, table, turns), table, turns)
         return np.concatenate(
-            [
-                np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / unit_F,
-                np.where(table.edge_seen, np.log(p.radius / table.radius), 0.0) / unit_a,
-                (p.share - table.share) / RULES.form_unit,
-                (p.total - turns.total) / RULES.form_unit,
-                (p.sphere - turns.sphere_part * turns.total) / RULES.form_unit,
-                np.where(known, p.exponent - exponent, 0.0) / RULES.form_unit_exponent,
-                np.where(known, np.log(given_back(p, turns)), 0.0) / RULES.form_unit_back,
-            ]
+            [off / one for off, one in zip([*loading, *unloading], units, strict=True)]
         )
 
-    return misfit
+    return scaled
 
 
 def _complex_step(function: Callable[[Any], Any], x: Array) -> Array:

@@ -34,7 +34,8 @@ from ..models.hardening import (
 )
 from ..models.table import energy_exponent
 from ..models.uncertainty import Uncertainty
-from .calibrate import SIGMAS
+from .calibrate import SIGMAS, shares_within
+from .prediction import size_of
 from .rules import RULES
 from .table import Sources, is_current, is_held_out
 
@@ -101,7 +102,7 @@ def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> Hardenin
     every = {name: _Off(*map(np.concatenate, zip(*(f[name] for f in found), strict=True)))
              for name in Uncertainty._fields}  # fmt: skip
     spread = {name: _spread(off) for name, off in every.items()}
-    errors = {name: _size(off.error) for name, off in every.items()}
+    errors = {name: size_of(off.error) for name, off in every.items()}
     return HardeningFit(replace(_regress(cases), spread=spread), errors, len(cases))
 
 
@@ -117,9 +118,9 @@ def judge_hardening(
     errors, within = {}, {}
     for name in Uncertainty._fields:
         off = _Off(*map(np.concatenate, zip(*(f[name] for f in found), strict=True)))
-        errors[name] = _size(off.error)
-        ratio = np.abs(off.error) / np.hypot(off.own, law.correction.spread[name] * off.hardens)
-        within[name] = (float(np.mean(ratio <= 1.0)), float(np.mean(ratio <= 2.0)))
+        errors[name] = size_of(off.error)
+        stated = np.hypot(off.own, law.correction.spread[name] * off.hardens)
+        within[name] = shares_within(off.error, stated)
     return errors, within
 
 
@@ -257,8 +258,3 @@ def _spread(off: _Off) -> float:
         )
 
     return 0.0 if beyond(0.0) >= 0.0 else float(brentq(beyond, 0.0, 1.0, xtol=1e-5))
-
-
-def _size(error: Array) -> tuple[float, float]:
-    size = np.abs(error)
-    return float(size.mean()), float(size.max())

@@ -76,11 +76,11 @@ def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
     return write_figure(made, path, dpi=110)
 
 
-def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Path:
-    """Draw mean pressure and share of combinations spread over Sy*, law and finite elements."""
+def draw_curves(p: Prediction, table: Table, path: Path) -> Path:
+    """Draw mean pressure and share of nine combinations over Sy*, law and finite elements."""
     made, axes = figure(1, 2, size=(12, 5))
     order = np.argsort([q.Sy_ratio for q in table.pairs])
-    picked = order[np.unique(np.linspace(0, len(order) - 1, most).astype(int))]
+    picked = order[np.unique(np.linspace(0, len(order) - 1, 9).astype(int))]
     modulus = np.array([q.E_reduced / q.Sy_min for q in table.pairs])
     ours = p.force / (np.pi * p.radius**2) * modulus[table.case]
     for number in picked:

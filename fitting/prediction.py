@@ -59,15 +59,9 @@ class Prediction:
 
     def mix(self, other: Prediction, rows: Any, turns: Any) -> Prediction:
         """Return this with the rows and turning points of the masks taken from `other`."""
-        loading = {
-            k: np.where(rows, getattr(other, k), getattr(self, k))
-            for k in ("force", "radius", "share")
-        }
-        unloading = {
-            k: np.where(turns, getattr(other, k), getattr(self, k))
-            for k in ("total", "sphere", "exponent")
-        }
-        return Prediction(**loading, **unloading)
+        masks = (rows, rows, rows, turns, turns, turns)
+        mine, theirs = vars(self).values(), vars(other).values()
+        return Prediction(*map(np.where, masks, theirs, mine))
 
 
 def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
@@ -100,6 +94,27 @@ def given_back(p: Prediction, turns: ResidualTable) -> Any:
     return recovered * (turns.exponent + 1.0) / (p.exponent + 1.0)
 
 
+def misfit(p: Prediction, table: Table, turns: ResidualTable) -> tuple[list[Any], list[Any]]:
+    """Law minus data, on loading and on unloading; 0 where the data do not know.
+
+    Of ln F, ln a and the share; of the residual depth, the sphere's, the exponent and ln of the
+    energy given back.
+    """
+    seen, known = table.edge_seen, np.isfinite(turns.exponent)
+    loading = [
+        np.where(seen, np.log(p.force / table.force), 0.0),
+        np.where(seen, np.log(p.radius / table.radius), 0.0),
+        p.share - table.share,
+    ]
+    unloading = [
+        p.total - turns.total,
+        p.sphere - turns.sphere_part * turns.total,
+        np.where(known, p.exponent - turns.exponent, 0.0),
+        np.where(known, np.log(given_back(p, turns)), 0.0),
+    ]
+    return loading, unloading
+
+
 def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
     """Mean and largest error beyond first yield."""
     yielding = table.w >= 1.0
@@ -109,18 +124,19 @@ def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
     known = np.isfinite(turns.exponent)
     sphere = p.sphere - turns.sphere_part * turns.total
     return Errors(
-        force=_size((F - 1.0)[seen]),
-        radius=_size((a - 1.0)[seen]),
-        hardness=_size((F / a**2 - 1.0)[seen]),
-        share=_size((p.share - table.share)[yielding]),
-        left_sphere=_size(sphere),
-        left_flat=_size(p.total - turns.total - sphere),
-        left=_size((p.total / turns.total - 1.0)[deep]),
-        exponent=_size((p.exponent - turns.exponent)[known]),
-        given_back=_size((given_back(p, turns) - 1.0)[known & deep]),
+        force=size_of((F - 1.0)[seen]),
+        radius=size_of((a - 1.0)[seen]),
+        hardness=size_of((F / a**2 - 1.0)[seen]),
+        share=size_of((p.share - table.share)[yielding]),
+        left_sphere=size_of(sphere),
+        left_flat=size_of(p.total - turns.total - sphere),
+        left=size_of((p.total / turns.total - 1.0)[deep]),
+        exponent=size_of((p.exponent - turns.exponent)[known]),
+        given_back=size_of((given_back(p, turns) - 1.0)[known & deep]),
     )
 
 
-def _size(part: Array) -> tuple[float, float]:
+def size_of(part: Array) -> tuple[float, float]:
+    """Mean and largest size of errors."""
     part = np.abs(part)
     return (float(part.mean()), float(part.max())) if part.size else (0.0, 0.0)

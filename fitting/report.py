@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..core.output import write_file
+from ..core.tables import markdown
 from .laws import FittedLaws
 from .prediction import Errors, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
@@ -17,7 +18,10 @@ from .table import ResidualTable, Table
 
 Within = Mapping[str, Sequence[float]]
 
-MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
+Mark = tuple[str, float, tuple[float, float] | None]
+"""A quantity's name in tables, its scale, and the mean and largest error that we aim at."""
+
+MARKS: dict[str, Mark] = {
     "force": ("F [%]", 100.0, (0.4, 3.0)),
     "radius": ("a [%]", 100.0, (0.25, 3.0)),
     "hardness": ("H [%]", 100.0, (0.7, 5.0)),
@@ -28,7 +32,6 @@ MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
     "exponent": ("exponent of the unloading", 1.0, None),
     "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, (0.5, 3.0)),
 }
-"""Each quantity's name in tables, its scale, and the mean and largest error that we aim at."""
 
 
 def stated_within(content: dict[str, Any]) -> dict[str, Within]:
@@ -38,14 +41,18 @@ def stated_within(content: dict[str, Any]) -> dict[str, Within]:
 
 def error_rows(columns: Sequence[tuple[str, Errors]]) -> list[list[str]]:
     """Rows of the table of errors, its head first: mean and largest of each column."""
-    rows = [["beyond first yield", *(f"{title}: mean, largest" for title, _ in columns), "aim"]]
-    for field in fields(Errors):
-        name, scale, aim = MARKS[field.name]
-        cells = [
-            ", ".join(f"{scale * x:.3g}" for x in getattr(errors, field.name))
-            for _, errors in columns
-        ]
-        rows.append([name, *cells, ", ".join(f"{x:g}" for x in aim) if aim else ""])
+    marks = {field.name: MARKS[field.name] for field in fields(Errors)}
+    return _size_rows("beyond first yield", {title: vars(e) for title, e in columns}, marks)
+
+
+def _size_rows(
+    head: str, columns: Mapping[str, Mapping[str, Sequence[float]]], marks: Mapping[str, Mark]
+) -> list[list[str]]:
+    """Rows of mean and largest errors by quantity."""
+    rows = [[head, *(f"{title}: mean, largest" for title in columns), "aim"]]
+    for key, (name, scale, aim) in marks.items():
+        cells = [", ".join(f"{scale * x:.3g}" for x in errors[key]) for errors in columns.values()]
+        rows.append([name, *cells, ", ".join(f"{x:g}" for x in aim or ())])
     return rows
 
 
@@ -63,15 +70,8 @@ def domain_rows(content: dict[str, Any], title: str) -> list[list[str]]:
     return [[title, "from", "to"], *([key, f"{a:.4g}", f"{b:.4g}"] for key, (a, b) in limits)]
 
 
-def markdown(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows, the head first, as a markdown table."""
-    head, *rest = rows
-    lines = [head, ["---"] * len(head), *rest]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
-
-
-def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]]:
-    """Rows of the table of the combinations with the largest errors of F, its head first."""
+def worst_rows(p: Prediction, table: Table) -> list[list[str]]:
+    """Rows of the table of the dozen combinations with the largest errors of F, its head first."""
     seen = (table.w >= 1.0) & table.edge_seen
     force = 100.0 * np.abs(p.force / table.force - 1.0)
     radius = 100.0 * np.abs(p.radius / table.radius - 1.0)
@@ -89,7 +89,7 @@ def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]
         lines.append((float(force[m].mean()), [*who, f"{pair.elastic_share:.2f}", *sizes]))
     lines.sort(key=lambda line: -line[0])
     head = ["combination", "Sy*", "E'/Sy_min", "x_s", "F [%]", "a [%]", "delta_s*"]
-    return [head, *(cells for _, cells in lines[:most])]
+    return [head, *(cells for _, cells in lines[:12])]
 
 
 def uncertainty_rows(within: Mapping[str, Within]) -> list[list[str]]:
@@ -113,18 +113,14 @@ def hardening_rows(columns: Mapping[str, Mapping[str, Sequence[float]]]) -> list
 
     `columns` has mean and largest error by title and by the names of `Uncertainty`.
     """
-    names = {
-        "force": ("F [%]", 100.0, "1, 5"),
-        "radius": ("a [%]", 100.0, "0.6, 3"),
-        "share": ("delta_s*", 1.0, "0.015, 0.12"),
-        "dent": ("residual depth, delta_m >= 5 delta_c [%]", 100.0, ""),
-        "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, ""),
+    marks: dict[str, Mark] = {
+        "force": ("F [%]", 100.0, (1.0, 5.0)),
+        "radius": ("a [%]", 100.0, (0.6, 3.0)),
+        "share": ("delta_s*", 1.0, (0.015, 0.12)),
+        "dent": ("residual depth, delta_m >= 5 delta_c [%]", 100.0, None),
+        "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, None),
     }
-    rows = [["metals that harden", *(f"{title}: mean, largest" for title in columns), "aim"]]
-    for key, (name, scale, aim) in names.items():
-        cells = [", ".join(f"{scale * x:.3g}" for x in column[key]) for column in columns.values()]
-        rows.append([name, *cells, aim])
-    return rows
+    return _size_rows("metals that harden", columns, marks)
 
 
 def write_report(

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -29,35 +29,50 @@ _COARSEST = "smoke"
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
-    """Loading rows of all cases; every array has shape (n,) and is dimensionless.
+class CaseRows:
+    """Rows of all cases; every array has shape (n,) and is dimensionless.
 
     - `case`: number of the material combination that the row belongs to.
     - `D`: Delta/R.
     - `w`: delta/delta_c.
-    - `force`: F/(E' R^2).
-    - `radius`: a/R.
-    - `share`: delta_s*.
-    - `edge_seen`: whether the opening gap beside the contact was wide enough to be fitted. Where it
-      was not, the radius is that of a node, up to an element too small, and the surface that can
-      touch ends close by: force and radius of such a row are not fitted.
     - `pairs`, `names`: pair and name of each case, length n_cases.
     """
 
     case: Integers
     D: Array
     w: Array
-    force: Array
-    radius: Array
-    share: Array
-    edge_seen: Mask
-    pairs: tuple[Pair, ...]
-    names: tuple[str, ...]
+    pairs: tuple[Pair, ...] = field(kw_only=True)
+    names: tuple[str, ...] = field(kw_only=True)
 
     @property
     def bodies(self) -> Bodies:
         """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
         return bodies_of(self.pairs)
+
+    def rows(self, mask: Mask) -> Self:
+        """Return the rows of `mask`; the cases keep their numbers."""
+        arrays: dict[str, Any] = {
+            k: v[mask] for k, v in vars(self).items() if isinstance(v, np.ndarray)
+        }
+        return replace(self, **arrays)
+
+
+@dataclass(frozen=True, eq=False)
+class Table(CaseRows):
+    """Loading rows: `case`, `D`, `w`, `pairs` and `names` as of `CaseRows`.
+
+    - `force`: F/(E' R^2).
+    - `radius`: a/R.
+    - `share`: delta_s*.
+    - `edge_seen`: whether the opening gap beside the contact was wide enough to be fitted. Where it
+      was not, the radius is that of a node, up to an element too small, and the surface that can
+      touch ends close by: force and radius of such a row are not fitted.
+    """
+
+    force: Array
+    radius: Array
+    share: Array
+    edge_seen: Mask
 
     @property
     def hardness(self) -> Array:
@@ -65,45 +80,20 @@ class Table:
         modulus = np.array([p.E_reduced / p.Sy_min for p in self.pairs])
         return np.asarray(self.force / (np.pi * self.radius**2) * modulus[self.case])
 
-    def rows(self, mask: Mask) -> Table:
-        """Return the rows of `mask`; the cases keep their numbers."""
-        return replace(self, **_masked(self, mask))
-
 
 @dataclass(frozen=True)
-class ResidualTable:
-    """Unloadings of all cases; every array has shape (n,) and is dimensionless.
+class ResidualTable(CaseRows):
+    """Unloadings as `CaseRows`, `D` and `w` those of the turning point.
 
-    - `case`, `D`, `w`: as in `Table`, at the turning point.
     - `total`: permanent approach over the largest one.
     - `sphere_part`: the sphere's part of the permanent approach.
     - `exponent`: N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, so that the elastic energy
       is right.
-    - `pairs`, `names`: as in `Table`.
     """
 
-    case: Integers
-    D: Array
-    w: Array
     total: Array
     sphere_part: Array
     exponent: Array
-    pairs: tuple[Pair, ...]
-    names: tuple[str, ...]
-
-    @property
-    def bodies(self) -> Bodies:
-        """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
-        return bodies_of(self.pairs)
-
-    def rows(self, mask: Mask) -> ResidualTable:
-        """Return the rows of `mask`; the cases keep their numbers."""
-        return replace(self, **_masked(self, mask))
-
-
-def _masked(table: Any, mask: Mask) -> dict[str, Any]:
-    columns = {f.name: getattr(table, f.name) for f in fields(table)}
-    return {k: v[mask] for k, v in columns.items() if isinstance(v, np.ndarray)}
 
 
 def read_sources(paths: Iterable[Path]) -> Sources:
@@ -161,32 +151,21 @@ def _key(pair: Pair) -> Array:
 
 
 def _loading(records: list[CaseRecord]) -> Table:
-    columns: list[list[Array]] = [[] for _ in range(7)]
+    parts = []
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
         usable = c["radius"] <= RULES.form_radius * p.R
-        values = (
-            np.full(len(c["delta"]), float(number)),
+        columns = (
+            np.full(len(c["delta"]), number),
             c["delta"] / p.R,
             c["delta"] / critical_depth(p),
             c["force"] / (p.E_reduced * p.R**2),
             c["radius"] / p.R,
             c["sphere"] / (c["sphere"] + c["flat"]),
-            (c["radius"] != c["radius_last_node"]).astype(float),
+            c["radius"] != c["radius_last_node"],
         )
-        for column, value in zip(columns, values, strict=True):
-            column.append(value[usable])
-    case, D, w, force, radius, share, seen = map(np.concatenate, columns)
-    return Table(
-        case=case.astype(np.int64),
-        D=D,
-        w=w,
-        force=force,
-        radius=radius,
-        share=share,
-        edge_seen=seen.astype(bool),
-        **_who(records),
-    )
+        parts.append([column[usable] for column in columns])
+    return Table(*map(np.concatenate, zip(*parts, strict=True)), **_who(records))
 
 
 def _who(records: Iterable[CaseRecord]) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.errors import InputError
+from ...core.tables import markdown
 from ...fitting.prediction import Errors
 from ...fitting.report import (
     MARKS,
@@ -15,7 +16,6 @@ from ...fitting.report import (
     coefficient_rows,
     domain_rows,
     error_rows,
-    markdown,
     uncertainty_rows,
 )
 

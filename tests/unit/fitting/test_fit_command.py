@@ -9,9 +9,9 @@ from dentscope.campaigns.designs import design_named
 from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
 from dentscope.core.flow import Flow, swift
+from dentscope.core.tables import markdown
 from dentscope.fitting import table
 from dentscope.fitting.prediction import Errors
-from dentscope.fitting.report import markdown
 from dentscope.fitting.table import read_sources, tables_of
 from dentscope.models.coefficients import read_coefficients
 from dentscope.studies.closed_form.page import (

@@ -9,6 +9,7 @@ from dentscope.core import InputError, Material, Pair
 from dentscope.fitting import correct as correcting
 from dentscope.fitting import fit as form_fit
 from dentscope.fitting import hardening
+from dentscope.fitting import prediction as predicting
 from dentscope.fitting.calibrate import Misses, _scaled, calibrate, within
 from dentscope.fitting.case_table import pair_table
 from dentscope.fitting.correct import REACHES, _Rows, _spread_out
@@ -116,7 +117,7 @@ def misfit(monkeypatch):
         table, turns, seen = rows_of(**off)
         monkeypatch.setattr(correcting, "moved", lambda numbers, shifts: None)
         monkeypatch.setattr(correcting, "predict_by", lambda *given: seen)
-        monkeypatch.setattr(correcting, "given_back", lambda p, u: np.full(4, back))
+        monkeypatch.setattr(predicting, "given_back", lambda p, u: np.full(4, back))
         return _Rows(None, table, turns, np.full(4, 0.003), np.full(4, 0.003)).misfit(None)
 
     return of
@@ -312,6 +313,6 @@ def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares
     )  # fmt: skip
     monkeypatch.setattr(form_fit, "ripple_of", lambda _: (0.0, 0.0))
     monkeypatch.setattr(form_fit, "predict", lambda *_: seen)
-    monkeypatch.setattr(form_fit, "given_back", lambda *_: np.exp([0.02]))
+    monkeypatch.setattr(predicting, "given_back", lambda *_: np.exp([0.02]))
     misfit = form_fit._misfit_of(table, turns)
     assert misfit(np.zeros(1)) == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 1.0])
