@@ -12,14 +12,14 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.output import in_use
 from ..core.processes.stopping import STOPS, stopped
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .shared.groups import group
-from .shared.places import one_of, refuse_beside
+from .shared.places import misused, one_of, refuse_beside
 
 # With so many cases done the pictures are drawn while a run goes on: the first, and the first
 # three, which in the large designs are the figures' pairs, Sy* = 0.1, 1 and 10.
@@ -124,10 +124,8 @@ def _share(part: str) -> Any:
 
     number, _, of = part.partition("/")
     if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
-        raise InputError(
-            f"{part!r}", source="command line", key="--part",
-            allowed="K/N, this run's number and how many share the sweep: 2/3",
-        )  # fmt: skip
+        allowed = "K/N, this run's number and how many share the sweep: 2/3"
+        raise misused(f"{part!r}", key="--part", allowed=allowed)
     return Share(int(number), int(of))
 
 

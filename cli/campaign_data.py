@@ -12,9 +12,8 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_file
 from ..core.tables import parquet
-from .shared.places import file_option, folder_option
-from .shared.terminal import console as new_console
-from .shared.terminal import show_table
+from .shared.places import file_option, folder_option, misused
+from .shared.terminal import new_console, show_table
 
 PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 """Folder of the published data: that of `campaigns.parts`, which help must not load."""
@@ -72,10 +71,8 @@ def _found(case: str, out: Path) -> tuple[Any, str]:
                 f"{len(found)} cases begin with {case!r}", source=where, key="CASE",
                 allowed="more of the id",
             )  # fmt: skip
-    raise InputError(
-        f"no case {case!r} in the own run or the published data", source="command line",
-        key="CASE", allowed="a name or an id of `dentscope campaign status`",
-    )  # fmt: skip
+    told = f"no case {case!r} in the own run or the published data"
+    raise misused(told, key="CASE", allowed="a name or an id of `dentscope campaign status`")
 
 
 def refine(

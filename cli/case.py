@@ -13,9 +13,8 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.inputs.templates import CASE, write_new
 from ..core.output import csv_text, write_figure, write_file
-from .shared.places import folder_option, refuse_beside
-from .shared.terminal import console as new_console
-from .shared.terminal import say, show_table
+from .shared.places import folder_option, misused, refuse_beside
+from .shared.terminal import new_console, say, show_table
 
 if TYPE_CHECKING:
     from ..start.measured import MeasuredContact
@@ -50,9 +49,7 @@ def case(
         typer.echo(write_new(CASE, file or Path("case.toml"), command="case"))
         return 0
     if file is None:
-        raise InputError(
-            "no file", source="command line", key="FILE", allowed="CASE.toml; --new writes one"
-        )
+        raise misused("no file", key="FILE", allowed="CASE.toml; --new writes one")
     from rich.progress import Progress
 
     from ..start.case_file import read_case, read_pair

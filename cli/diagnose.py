@@ -11,11 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ..core.errors import InputError
 from ..core.output import write_file
-from .shared.first_use import tell_first_use
-from .shared.places import folder_option, writable_folder
-from .shared.terminal import say
+from .shared.places import folder_option, misused, writable_folder
+from .shared.terminal import say, tell_first_use
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
@@ -61,10 +59,8 @@ def diagnose(
     from ..recordings.shipped import set_folder, shipped_sets
 
     if folder is None:
-        raise InputError(
-            "no recording set", source="command line", key="FOLDER",
-            allowed=f"a folder, or a shipped set: {', '.join(shipped_sets())}",
-        )  # fmt: skip
+        known = f"a folder, or a shipped set: {', '.join(shipped_sets())}"
+        raise misused("no recording set", key="FOLDER", allowed=known)
     from ..recordings import read
 
     place = set_folder(folder)

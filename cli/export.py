@@ -9,8 +9,8 @@ import typer
 
 from ..core.errors import InputError
 from .shared.groups import group
-from .shared.places import folder_option
-from .shared.terminal import console, say, show_table
+from .shared.places import folder_option, misused
+from .shared.terminal import new_console, say, show_table
 
 if TYPE_CHECKING:
     from ..dynamics.told.discrete_elements import ExportedRow
@@ -39,10 +39,8 @@ def export_law(
 
     found = law_named(law) if law in ("compact", "fitted") or is_file(law) else None
     if not isinstance(found, ClosedForm):
-        raise InputError(
-            f"{law!r} is no closed form of ours", source="command line", key="LAW",
-            allowed="compact, fitted, a fitted.json of `dentscope fit`; any law: `export dem`",
-        )  # fmt: skip
+        known = "compact, fitted, a fitted.json of `dentscope fit`; any law: `export dem`"
+        raise misused(f"{law!r} is no closed form of ours", key="LAW", allowed=known)
     for path in write_sources(found, out):
         typer.echo(str(path))
 
@@ -93,7 +91,7 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
 
     chosen = ball.by(law_named(law or ball.law))
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
-    shown, between = console(), _between(ball, chosen, speeds)
+    shown, between = new_console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
     for row in rows:
         for name in row.left_out:
@@ -174,10 +172,8 @@ def _speeds(text: str) -> list[float]:
         numbers = []
     pair = len(numbers) == 2 and numbers[0] < numbers[1]
     if not numbers or any(map(SPEEDS.wanted, numbers)) or (":" in text and not pair):
-        raise InputError(
-            f"{text!r}", source="command line", key="--speed",
-            allowed="FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]",
-        )  # fmt: skip
+        allowed = "FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]"
+        raise misused(f"{text!r}", key="--speed", allowed=allowed)
     return (
         np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist() if ":" in text else numbers
     )

@@ -13,14 +13,10 @@ from ..core.inputs.input_file import checked_file
 from . import studies
 from .campaign_data import PUBLISHED
 from .shared.places import folder_option, one_of, refuse_beside
-from .shared.terminal import console as new_console
-from .shared.terminal import show_table
+from .shared.terminal import new_console, show_table
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from ..models.fitted import ClosedForm
-    from ..models.hardening import HardeningLaw
 
 _OWN = Path("build/campaign")
 _ROOT = Path(__file__).resolve().parents[1]
@@ -193,16 +189,19 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     from ..fitting.refit import judged
     from ..fitting.report import error_rows, hardening_rows, uncertainty_rows
     from ..fitting.table import read_sources
+    from ..models import law_named
     from ..models.coefficients import drawn_from
 
     sources = read_sources(files)
-    found = judged(sources, [_law_in_use("compact"), _law_in_use("fitted")])
+    laws: list[Any] = [law_named("compact"), law_named("fitted")]
+    found = judged(sources, laws)
     count = len(found.names)
     _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
     _show(console, uncertainty_rows(found.within))
     hard = hardening_records(sources, held_out=True)
     if hard:
-        errors, within = judge_hardening(_hardening_in_use(), hard)
+        law: Any = law_named("hardening")
+        errors, within = judge_hardening(law, hard)
         _show(console, hardening_rows({f"{len(hard)} pairs that harden": errors}))
         _show(console, uncertainty_rows({"hardening": within}))
     if publish:
@@ -211,21 +210,3 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
         section = judged_section(found.errors, found.names, drawn_from(), within=found.within)
         update_page(_PAGE, section)
     return 0
-
-
-def _law_in_use(name: str) -> ClosedForm:
-    from ..models import law_named
-    from ..models.fitted import ClosedForm
-
-    law = law_named(name)
-    assert isinstance(law, ClosedForm)
-    return law
-
-
-def _hardening_in_use() -> HardeningLaw:
-    from ..models import law_named
-    from ..models.hardening import HardeningLaw
-
-    law = law_named("hardening")
-    assert isinstance(law, HardeningLaw)
-    return law

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.inputs.templates import template, write_new
 from ..core.output import write_figure
 from .laws import laws_named
-from .shared.first_use import tell_first_use
-from .shared.places import folder_option, refuse_beside
-from .shared.terminal import console as new_console
-from .shared.terminal import say, show_table
+from .shared.places import folder_option, misused, refuse_beside
+from .shared.terminal import new_console, say, show_table, tell_first_use
 
 if TYPE_CHECKING:
     from ..dynamics.files.setup import Setup
@@ -49,10 +47,8 @@ def impact(
         target = setup or Path(f"{new}.toml")
         typer.echo(write_new(template(new), target, command="impact"))
     elif setup is None:
-        raise InputError(
-            "no file", source="command line", key="SETUP",
-            allowed="a TOML with [target], [strikers.NAME] and [impact]; --new writes one",
-        )  # fmt: skip
+        needed = "a TOML with [target], [strikers.NAME] and [impact]; --new writes one"
+        raise misused("no file", key="SETUP", allowed=needed)
     else:
         _from_file(setup, law or [], out, exact=exact)
 
@@ -108,7 +104,6 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
-    from ..core.output import write_figure
     from ..dynamics.told.band import MOST_SWEPT, swept_stds
     from ..dynamics.told.checks import swept_above_one, swept_walls
     from ..dynamics.told.draw import draw_sweep, swept_in_vain

@@ -7,11 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.errors import InputError
 from ..core.inputs.templates import INVERSE, write_new
-from .shared.places import folder_option, refuse_beside
-from .shared.terminal import console as new_console
-from .shared.terminal import show_table
+from .shared.places import folder_option, misused, refuse_beside
+from .shared.terminal import new_console, show_table
 
 
 def inverse(
@@ -28,10 +26,8 @@ def inverse(
         typer.echo(write_new(INVERSE, file or Path("inverse.toml"), command="inverse"))
         return
     if file is None:
-        raise InputError(
-            "no file", source="command line", key="FILE",
-            allowed="a TOML with [striker] and [[trial]]; --new writes one",
-        )  # fmt: skip
+        needed = "a TOML with [striker] and [[trial]]; --new writes one"
+        raise misused("no file", key="FILE", allowed=needed)
     from ..core.inputs.toml_input import read_toml
 
     read_toml(file)  # what is no TOML is told before the simulation is loaded

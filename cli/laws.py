@@ -11,8 +11,7 @@ from ..core.errors import InputError
 from ..core.output import csv_text, write_figure, write_file
 from .shared.groups import Commands, group
 from .shared.places import folder_option
-from .shared.terminal import console as new_console
-from .shared.terminal import entry, say, show_table, wrapped
+from .shared.terminal import entry, new_console, say, show_table, wrapped
 
 if TYPE_CHECKING:
     from ..models.base import ContactLaw

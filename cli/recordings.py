@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .shared.groups import group
-from .shared.places import folder_option, one_of
-from .shared.terminal import console, say, show_table
+from .shared.places import folder_option, misused, one_of
+from .shared.terminal import new_console, say, show_table
 
 if TYPE_CHECKING:
     from ..reduce.table.sheet import Sheet
@@ -98,7 +98,6 @@ def new(
 
     From a sheet with a row a drop the rows are taken over; what became of each column is told.
     """
-    from ..core.errors import InputError
     from ..recordings.template import write_template
 
     if sheet is not None:
@@ -106,10 +105,8 @@ def new(
         _new_from(sheet, folder, words, of_book=of_book, sphere=sphere, dry_run=dry_run)
         return
     if column or dry_run or of_book:
-        raise InputError(
-            "--column, --dry-run and --sheet are of a sheet", source="command line", key="--from",
-            allowed="--from SHEET beside them",
-        )  # fmt: skip
+        told = "--column, --dry-run and --sheet are of a sheet"
+        raise misused(told, key="--from", allowed="--from SHEET beside them")
     write_template(folder, shape="sphere" if sphere else "rod")
     check = f"dentscope recordings check {quote(str(folder))}"
     typer.echo(f"{folder}: fill in set.toml and trials.csv, then: {check}")
@@ -140,7 +137,7 @@ def _new_from(
         typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
         _tell_columns(found, found.left_out)
         if dry_run:
-            show_table(console(), *found.shown())
+            show_table(new_console(), *found.shown())
     if dry_run:
         return
     for line in still:
@@ -162,18 +159,16 @@ def add(
     """Add trials to a set, all rows of a table or sheet or none; then diagnose it again."""
     from tempfile import TemporaryDirectory
 
-    from ..core.errors import InputError
     from ..recordings.adding import add_trials
 
     if (rows is None) == (sheet is None):
-        raise InputError("one table is added", source="command line", key="ROWS, --from",
-                         allowed="ROWS, or --from SHEET")  # fmt: skip
+        raise misused("one table is added", key="ROWS, --from", allowed="ROWS, or --from SHEET")
     with TemporaryDirectory() as place:
         if sheet is not None:
             rows = _rows_of(sheet, folder, Path(place), column or [], of_book, striker)
         elif column or of_book or striker:
-            raise InputError("--column, --sheet and --striker are of a sheet", key="--from",
-                             source="command line", allowed="--from SHEET beside them")  # fmt: skip
+            told = "--column, --sheet and --striker are of a sheet"
+            raise misused(told, key="--from", allowed="--from SHEET beside them")
         assert rows is not None
         now, new = add_trials(folder, rows, source=f"{sheet}, as read" if sheet else "")
     typer.echo(f"{folder}: {_trials(len(new))} added, {_trials(len(now.trials))} in all")

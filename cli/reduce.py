@@ -17,7 +17,7 @@ import typer
 
 from ..core.errors import InputError, InputErrors
 from .shared.groups import Commands, group
-from .shared.places import folder_option
+from .shared.places import folder_option, misused
 
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -146,10 +146,8 @@ def _reduce_each(
     from .shared.batch import draw_page
 
     if row.get("trial"):
-        raise InputError(
-            f"given for {len(jobs)} files", key="--trial", source="command line",
-            allowed="left out: each trial is named as its file",
-        )  # fmt: skip
+        needed = "left out: each trial is named as its file"
+        raise misused(f"given for {len(jobs)} files", key="--trial", allowed=needed)
     left_out: list[InputError] = []
     failed, pictures = 0, dict[str, Path]()
     for job in track(jobs, "reducing", console=Console(stderr=True), transient=True):

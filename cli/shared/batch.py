@@ -13,6 +13,7 @@ from ...core.inputs.csv_table import Problems, read_text_table
 from ...reduce.images.picture_file import PICTURES, natural_order
 from ...reduce.kinds import Kind
 from ...reduce.output.record import trial_name
+from .places import misused
 
 _FILE = "file"
 
@@ -38,17 +39,13 @@ def jobs_of(
     if listed is not None:
         jobs += _listed(kind, listed, given)
     if not jobs:
-        raise InputError(
-            "no raw file", source="command line", key="FILE", allowed="files, folders of them, or "
-            "--list with a table of them",
-        )  # fmt: skip
+        needed = "files, folders of them, or --list with a table of them"
+        raise misused("no raw file", key="FILE", allowed=needed)
     names = [trial_name(job.file) for job in jobs]
     twice = next((name for name in names if names.count(name) > 1), "")
     if twice:
-        raise InputError(
-            f"two files are named {twice}", source="command line", key="FILE",
-            allowed="files of different names: they name the trials",
-        )  # fmt: skip
+        needed = "files of different names: they name the trials"
+        raise misused(f"two files are named {twice}", key="FILE", allowed=needed)
     return jobs
 
 

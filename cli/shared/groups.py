@@ -11,8 +11,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from ...core.errors import InputError
 from ..studies import COMMANDS as _WORKSHOP
+from .places import misused
 
 SECTIONS = (
     (
@@ -67,9 +67,7 @@ class Commands(TyperGroup):
             known = list(self.abouts(ctx))
             near = get_close_matches(name, known, n=1)
             meant = f"; did you mean {near[0]!r}?" if near else ""
-            raise InputError(
-                f"no command {name!r}{meant}", source="command line", allowed=", ".join(known)
-            )
+            raise misused(f"no command {name!r}{meant}", allowed=", ".join(known))
         return super().resolve_command(ctx, args)
 
     def sections(self) -> tuple[tuple[str, tuple[str, ...]], ...]:

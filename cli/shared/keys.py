@@ -9,7 +9,7 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from ...core.errors import InputError
+from .places import misused
 from .terminal import entry
 
 if typing.TYPE_CHECKING:
@@ -54,9 +54,7 @@ def keys(
 ) -> None:
     """Say what every key of an input file means, allows and is by default."""
     if file and file not in FILES:
-        raise InputError(
-            f"no file {file!r}", source="command line", key="FILE", allowed=", ".join(FILES)
-        )
+        raise misused(f"no file {file!r}", key="FILE", allowed=", ".join(FILES))
     typer.echo("A quantity is a number, or { value = ..., std = ... }; all are in SI units.\n")
     for kind in [file] if file else FILES:
         typer.echo(f"{kind}: {FILES[kind]}")

@@ -11,7 +11,10 @@ import typer
 
 from ...core.errors import InputError
 
-_LINE = "command line"
+
+def misused(told: str, *, key: str = "", allowed: str = "") -> InputError:
+    """Return what is wrong with an option or an argument, `key`."""
+    return InputError(told, source="command line", key=key, allowed=allowed)
 
 
 def folder_option(about: str, *, name: str = "--out") -> Any:
@@ -30,7 +33,7 @@ def file_option(about: str, *, name: str = "--to") -> Any:
 
     def check(path: Path) -> Path:
         if path.is_dir():
-            raise InputError(f"{path} is a folder", source=_LINE, key=name, allowed="a file's name")
+            raise misused(f"{path} is a folder", key=name, allowed="a file's name")
         writable_folder(path.parent, key=name)
         return path
 
@@ -46,21 +49,16 @@ def writable_folder(path: Path, *, key: str) -> Path:
     while not there.exists() and not there.is_symlink() and there != there.parent:
         there = there.parent
     if not there.is_dir():
-        raise InputError(
-            f"{there} is no folder", source=_LINE, key=key, allowed="a folder, new or existing"
-        )
+        raise misused(f"{there} is no folder", key=key, allowed="a folder, new or existing")
     if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(
-            f"{there} may not be written", source=_LINE, key=key, allowed="a folder of your own"
-        )
+        raise misused(f"{there} may not be written", key=key, allowed="a folder of your own")
     return path
 
 
 def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
     """Return a word that an option takes, or refuse it."""
     if asked not in allowed:
-        known = ", ".join(filter(None, allowed))
-        raise InputError(repr(asked), source=_LINE, key=key, allowed=known)
+        raise misused(repr(asked), key=key, allowed=", ".join(filter(None, allowed)))
     return asked
 
 
@@ -74,4 +72,4 @@ def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
         source = context.get_parameter_source(parameter.name or "")
         if parameter.name in names and source is not None and source.name == "COMMANDLINE":
             key = parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.name.upper()
-            raise InputError(f"does nothing {option}", source=_LINE, key=key, allowed="left out")
+            raise misused(f"does nothing {option}", key=key, allowed="left out")

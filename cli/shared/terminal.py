@@ -1,11 +1,13 @@
-"""What the commands print: tables that keep every character, whatever the width."""
+"""What commands print: tables that keep every character, whatever the width; first uses."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import typer
@@ -17,8 +19,10 @@ if TYPE_CHECKING:
 # limit: columns that a table takes to be there [-]: half a terminal
 _NARROWEST = 40
 
+_COMPILED = "compiled._impacts-*.nbi"  # files of numba by which compiled impacts are known
 
-def console() -> Console:
+
+def new_console() -> Console:
     """Return a console for text in which square brackets are units, and no markup."""
     from rich.console import Console
 
@@ -93,6 +97,16 @@ def wrapped(text: str, indent: int = 0, further: int = 0) -> str:
         break_long_words=False, break_on_hyphens=False,
     )  # fmt: skip
     return "\n".join(lines)
+
+
+def tell_first_use() -> None:
+    """Say on standard error that what impacts need is compiled first, if it is not there yet."""
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
+    if next(folder.rglob(_COMPILED), None) is None:
+        typer.echo(
+            "first use: compiling, a minute or so; it is kept, and later commands start at once",
+            err=True,
+        )
 
 
 def entry(name: str, text: str) -> None:

@@ -11,7 +11,7 @@ import typer
 
 from ...cli.shared.groups import group
 from ...cli.shared.places import writable_folder
-from ...cli.shared.terminal import console, say, show_table
+from ...cli.shared.terminal import new_console, say, show_table
 from ...core.errors import InputError
 
 # limit: how long an answer takes at least [s]: the slowest simulation of ten trials
@@ -122,4 +122,4 @@ def score(
         first = read_answers(before, sets) if before else None
         found += bought.bought_scores(aside, said, first)
     rows = [(r.name, f"{r.value:.3f}", f"{r.low:.3f} to {r.high:.3f}") for r in found]
-    show_table(console(), (f"{len(sets)} sets", "value", "95 % interval"), rows)
+    show_table(new_console(), (f"{len(sets)} sets", "value", "95 % interval"), rows)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from dentscope.cli.shared.first_use import tell_first_use
+from dentscope.cli.shared.terminal import tell_first_use
 
 
 def test_it_is_said_until_the_code_is_there(
