@@ -11,7 +11,6 @@ uniform where the fit is right (Sailynoja, Schmitt, Buerkner, Vehtari, arXiv:250
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -33,7 +32,7 @@ from ..discrepancy.rank import rank, screen, sharpened_leading
 from ..discrepancy.unknowns.lawerror import SIZES
 from ..recordings import read
 from ..recordings.shipped import FOLDER
-from .calibration import shares
+from .calibration import append, shares
 from .proof.ranks import read_ranks
 
 LEADING = {
@@ -166,10 +165,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", choices=LEADING, default=())
     given = parser.parse_args()
     sets = {k: v for k, v in LEADING.items() if not given.only or k in given.only}
-    with given.out.open("a", encoding="utf-8") as stream:
-        for line in lines(given.out, given.draws, sets):
-            stream.write(json.dumps(line) + "\n")
-            stream.flush()
+    append(lines(given.out, given.draws, sets), given.out)
 
 
 if __name__ == "__main__":

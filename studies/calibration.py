@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -107,6 +107,14 @@ def drawn(
                 yield {"mechanism": name, "draw": number, "shares": ranks(simulator, name, rng)}
 
 
+def append(lines: Iterable[dict[str, Any]], out: Path) -> None:
+    """Write lines at the end of a file, each as soon as it is there."""
+    with out.open("a", encoding="utf-8") as stream:
+        for line in lines:
+            stream.write(json.dumps(line) + "\n")
+            stream.flush()
+
+
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -115,10 +123,7 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=100)
     parser.add_argument("--only", nargs="*", choices=BENCHES, default=())
     given = parser.parse_args()
-    with given.out.open("a", encoding="utf-8") as stream:
-        for line in drawn(given.folder, given.out, given.draws, given.only):
-            stream.write(json.dumps(line) + "\n")
-            stream.flush()
+    append(drawn(given.folder, given.out, given.draws, given.only), given.out)
 
 
 if __name__ == "__main__":

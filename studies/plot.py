@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..campaigns import CaseRecord
-from ..core.material import Material, Pair
+from ..core.material import Pair
 from ..core.output import write_figure
 from ..models import LAWS
 from ..models.base import ContactLaw
@@ -85,12 +85,6 @@ class Table:
     rows: Sequence[Sequence[str]]
     note: str
 
-    @property
-    def markdown(self) -> str:
-        """The table in Markdown."""
-        lines = [self.header, tuple("---" for _ in self.header), *self.rows]
-        return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
 
 Entry = Picture | Table
 """What a chapter of the gallery is made of."""
@@ -138,20 +132,6 @@ def look(law: ContactLaw) -> dict[str, Any]:
 def line_of(law: ContactLaw) -> Line:
     """How a law is drawn; a joined one as its loading."""
     return LINES.get(law.name.split("+")[0], Line("0.4", "grey", "-", "solid"))
-
-
-TABLE_2_1 = {
-    1: (200e9, 200e9, 200e6, 0.30), 2: (200e9, 200e9, 300e6, 0.33), 3: (71.7e9, 200e9, 300e6, 0.33),
-    4: (71.7e9, 200e9, 503e6, 0.30), 5: (200e9, 200e9, 503e6, 0.33),
-}  # fmt: skip
-"""E_s, E_f, Sy_min and nu_s of the thesis's five cases; nu_f = 0.3 and R = 1 mm."""
-
-
-def table_2_1(number: int, ratio: float) -> Pair:
-    """Pair `number` of table 2.1 at the strength ratio Sy* = `ratio`."""
-    E_s, E_f, S, nu = TABLE_2_1[number]
-    s, f = (S, S / ratio) if ratio < 1.0 else (S * ratio, S)
-    return Pair(Material(E=E_s, nu=nu, Sy=s), Material(E=E_f, nu=0.3, Sy=f), 1e-3)
 
 
 def same(record: CaseRecord, pair: Pair, *, within: float = 0.02) -> bool:

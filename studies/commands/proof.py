@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -32,18 +35,14 @@ def run(
         float, typer.Option(min=1.0, help="Longest time of one diagnosis [s].")
     ] = 900.0,
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
-) -> int:
+) -> None:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
     one_of(which, LISTS, key="--list")
-    from multiprocessing import active_children
-
     from rich.console import Console
     from rich.progress import Progress
 
-    from ...core.processes.stopping import STOPS, stopped
-    from ...core.processes.threads import one_thread_each
     from ..proof.lists import LISTS as made
-    from ..proof.run import carry_on, local_workers, run_folder, verdicts_of
+    from ..proof.run import carry_on, run_folder, verdicts_of
 
     folder = run_folder(out, which)
     total, before = len(made[which]()), verdicts_of(folder)
@@ -51,26 +50,41 @@ def run(
         f"{folder}: {total} sets, {before} done; {workers} workers. Ctrl-C stops, the same command "
         "goes on."
     )
-    one_thread_each()
     console = Console()
-    pool = local_workers(workers)
-    steps = carry_on(folder, which, pool, at_once=workers, hours=hours, most=most, limit_s=limit)
+    with (
+        _workers(workers) as pool,
+        Progress(console=console, disable=not console.is_terminal) as bar,
+    ):
+        task = bar.add_task("sets", total=total, completed=before)
+        for name, event in carry_on(
+            folder, which, pool, at_once=workers, hours=hours, most=most, limit_s=limit
+        ):
+            bar.advance(task)
+            state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
+            console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
+
+
+@contextmanager
+def _workers(count: int) -> Iterator[Executor]:
+    """Worker processes; where the command is stopped they are ended, and it says how to go on."""
+    from multiprocessing import active_children
+
+    from ...core.processes.stopping import STOPS, stopped
+    from ...core.processes.threads import one_thread_each
+    from ..proof.run import local_workers
+
+    one_thread_each()
+    pool = local_workers(count)
     try:
-        with Progress(console=console, disable=not console.is_terminal) as bar:
-            task = bar.add_task("sets", total=total, completed=before)
-            for name, event in steps:
-                bar.advance(task)
-                state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
-                console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
+        yield pool
     except STOPS as stop:
         code = stopped(stop)
         for worker in active_children():
             worker.terminate()  # a diagnosis may take minutes, and is begun anew
         typer.echo("stopped; the same command goes on from here")
-        return code
+        raise typer.Exit(code) from None
     finally:
         pool.shutdown(cancel_futures=True)
-    return 0
 
 
 @app.command()
@@ -150,36 +164,21 @@ def peers(
     ],
     most: Annotated[int, typer.Option(min=1, help="So many sets at most.")] = 10**9,
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
-) -> int:
+) -> None:
     """Compare the diagnosis with simple rules on the same problems. Stop it at any time."""
-    from multiprocessing import active_children
     from time import monotonic
 
-    from ...core.processes.stopping import STOPS, stopped
-    from ...core.processes.threads import one_thread_each
     from ..peers.compare import compared
     from ..proof.rivals import read_lines, report, told
-    from ..proof.run import local_workers
 
-    one_thread_each()
-    pool = local_workers(workers)
     begun, first = monotonic(), None
-    try:
+    with _workers(workers) as pool:
         for line, done, total in compared(folder, pool, at_once=workers, most=most):
             first = done if first is None else first
             left = (monotonic() - begun) / (done - first + 1) * (total - done)
             typer.echo(f"[{done}/{total}, {duration(left)} left] {told(line)}")
-    except STOPS as stop:
-        code = stopped(stop)
-        for worker in active_children():
-            worker.terminate()
-        typer.echo("stopped; the same command goes on from here")
-        return code
-    finally:
-        pool.shutdown(cancel_futures=True)
     for text in report(read_lines(folder)):
         typer.echo(text)
-    return 0
 
 
 @app.command()

@@ -45,7 +45,9 @@ def verify(
             typer.echo(f"{check.name:22} {check.title}")
         return 0
     chosen = [check_named(name) for name in only] if only else list(CHECKS)
-    from ..verification import Bench, Effort, run_checks, write_report
+    from ..verification.bench import Bench, Effort
+    from ..verification.report import write_report
+    from ..verification.runner import run_checks
 
     bench = Bench(
         folder=folder,

@@ -42,24 +42,17 @@ from .motion import (
 )
 
 
-def oracle_impact(
-    scene: Scene,
-    settings: Settings = Settings(),  # noqa: B008
-    *,
-    tolerance: float = 1e-11,
-) -> Impact:
-    """Integrate one impact with the library's integrator to a relative `tolerance`.
-
-    Of `settings` only the budgets count.
-    """
-    return _Walk(scene, arrays_of(scene, settings), settings, tolerance).run()
+def oracle_impact(scene: Scene, *, tolerance: float = 1e-11) -> Impact:
+    """Integrate one impact with the library's integrator to a relative `tolerance`."""
+    return _Walk(scene, arrays_of(scene, Settings()), tolerance).run()
 
 
 class _Walk:
     """Goes from event to event."""
 
-    def __init__(self, scene: Scene, a: c.Given, settings: Settings, tolerance: float) -> None:
-        self.motion, self.a, self.settings = Motion(scene, a), a, settings
+    def __init__(self, scene: Scene, a: c.Given, tolerance: float) -> None:
+        self.motion, self.a = Motion(scene, a), a
+        self.most_contacts = int(Settings().max_contacts)
         self.rtol, self.small_share = tolerance, 0.1 * tolerance
         self.surface = a.surface.copy()
 
@@ -188,7 +181,7 @@ class _Walk:
         self.stuck, self.ending = False, c.DONE
         self.low = self.high = self.x_low = self.x_high = 0.0
         scale = self.scales(z)
-        for _ in range(int(self.settings.max_contacts) * 100):
+        for _ in range(self.most_contacts * 100):
             name, z = self.contact_until(z, k, scale)
             if name == "budget":
                 return z
@@ -204,7 +197,7 @@ class _Walk:
             touch = self.fly(z, scale)
             if touch is None:
                 return kept
-            if self.contacts >= self.settings.max_contacts:
+            if self.contacts >= self.most_contacts:
                 self.ending = c.CONTACT_BUDGET
                 return kept
             z, self.touched = touch, self.now

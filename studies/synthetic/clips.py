@@ -291,16 +291,14 @@ def random_ball(seed: int) -> ClipTruth:
     )  # fmt: skip
 
 
-def write_video(
-    frames: npt.NDArray[np.uint8], path: Path, *, container_rate: int = 25, codec: str = "ffv1"
-) -> None:
+def write_video(frames: npt.NDArray[np.uint8], path: Path, *, container_rate: int = 25) -> None:
     """Write frames without loss; the container's rate is, as with high-speed cameras, arbitrary."""
     import av
 
     with av.open(str(path), "w") as container:
-        stream = container.add_stream(codec, rate=container_rate)
+        stream = container.add_stream("ffv1", rate=container_rate)
         stream.height, stream.width = frames.shape[1:]
-        stream.pix_fmt = "gray" if codec == "ffv1" else "yuv420p"
+        stream.pix_fmt = "gray"
         for frame in frames:
             container.mux(stream.encode(av.VideoFrame.from_ndarray(frame, format="gray")))
         container.mux(stream.encode())

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,10 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.inputs.toml_input import read_toml
-from ...core.material import Material
+from ...core.material import Material, Pair
 from ...dynamics.integrate import strike
 from ...dynamics.result import Impact
-from ...dynamics.scene import Approach, Scene, Striker, scene_of
+from ...dynamics.scene import Approach, Scene, Striker
 from ...models.base import ContactLaw
 
 REFERENCE = Path(__file__).resolve().parents[2] / "data" / "reference"
@@ -33,19 +34,13 @@ class Bench:
 
     def scene(self, law: ContactLaw, *, height: float, mass: float) -> Scene:
         """Return the drop from `height` [m] with the rod's mass replaced [kg]."""
-        rod = Striker(
-            mass=mass,
-            tip_radius=self.striker.tip_radius,
-            length=self.striker.length,
-            radius=self.striker.radius,
-        )
-        return scene_of(
-            law,
-            sphere=self.sphere,
-            flat=self.flat,
-            striker=rod,
-            approach=Approach.dropped(height),
-        )
+        rod = replace(self.striker, mass=mass, inertia=math.nan)  # that of its shape
+        return Scene(law, self.pair, rod, Approach.dropped(height))
+
+    @property
+    def pair(self) -> Pair:
+        """Rod and flat."""
+        return Pair(self.sphere, self.flat, self.striker.tip_radius)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,24 +77,13 @@ def curves(
     found: Bench, laws: Sequence[ContactLaw], *, masses: Sequence[float], count: int = 9
 ) -> list[Curve]:
     """Drop the rod from `count` heights for each law and each mass."""
-    heights = np.unique(
-        np.concatenate(
-            [
-                np.linspace(*found.heights, count),
-                [row["drop_height_m"] for row in found.measured],
-            ]
-        )
-    )
-    return [
-        Curve(
-            law,
-            mass,
-            heights,
-            tuple(strike(found.scene(law, height=float(h), mass=mass)) for h in heights),
-        )
-        for mass in masses
-        for law in laws
-    ]
+    measured = [row["drop_height_m"] for row in found.measured]
+    heights = np.unique([*np.linspace(*found.heights, count), *measured])
+
+    def along(law: ContactLaw, mass: float) -> tuple[Impact, ...]:
+        return tuple(strike(found.scene(law, height=float(h), mass=mass)) for h in heights)
+
+    return [Curve(law, mass, heights, along(law, mass)) for mass in masses for law in laws]
 
 
 def deviation(curve: Curve, measured: Mapping[str, Any]) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from ...dynamics.files.inverse_file import InverseRow
 from ...dynamics.integrate import strike
 from ...dynamics.inverse import MeasuredScar, infer
 from ...dynamics.result import Impact
-from ...dynamics.scene import Approach, Friction, Instrument, Striker, scene_of
+from ...dynamics.scene import Approach, Friction, Instrument, Scene, Striker, scene_of
 from ...models.base import ContactLaw
 from .chapter3 import REFERENCE
 
@@ -43,19 +43,23 @@ def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[InverseRow]
     return rod, rows
 
 
-def simulate_experiment(experiment: Mapping[str, Any], law: ContactLaw, *, mass: float) -> Impact:
-    """Simulate one row of tables 5.2-5.4 with the rigid rod of the given mass."""
+def scene_at(
+    law: ContactLaw, degrees: float, speed: float, mu: float, *, mass: float | None = None
+) -> Scene:
+    """Return the rod's impact at an angle to the flat, a speed [m/s] and a friction coefficient."""
     data = read_toml(REFERENCE / "chapter45.toml")
     rod, flat = (
         Material(b["E_Pa"], b["nu"], b["Sy_Pa"], density=b["density_kg_m3"])
         for b in (data["rod"], data["flat"])
     )
-    return strike(
-        scene_of(
-            law, sphere=rod, flat=flat, striker=thesis_rod(mass=mass),
-            approach=Approach(
-                -experiment["approach_m_s"], math.radians(experiment["angle_deg"])
-            ),
-            friction=Friction(experiment["friction"]), instrument=PROFILOMETER,
-        )
+    return scene_of(
+        law, sphere=rod, flat=flat, striker=thesis_rod(mass=mass),
+        approach=Approach(speed, math.radians(degrees)), friction=Friction(mu),
     )  # fmt: skip
+
+
+def simulate_experiment(experiment: Mapping[str, Any], law: ContactLaw, *, mass: float) -> Impact:
+    """Simulate one row of tables 5.2-5.4 with the rigid rod of the given mass."""
+    speed, mu = -experiment["approach_m_s"], experiment["friction"]
+    scene = scene_at(law, experiment["angle_deg"], speed, mu, mass=mass)
+    return strike(scene.with_(instrument=PROFILOMETER))

@@ -14,23 +14,11 @@ import numpy as np
 
 from ... import fem
 from ...campaigns.case import Case
+from ...campaigns.schema import CURVE
 from ...core.arrays import Array
 from ...core.material import Material, Pair
 from ...core.output import write_file
 from .result import Result
-
-_COLUMNS = (
-    "delta",
-    "force",
-    "radius",
-    "radius_last_node",
-    "sphere",
-    "flat",
-    "hardness",
-    "force_defect",
-    "energy_defect",
-    "dissipated",
-)
 
 
 class Effort(Enum):
@@ -148,7 +136,7 @@ def _kept(solution: fem.Solution) -> dict[str, Any]:
 
 def _columns(curve: fem.Curve) -> dict[str, list[float | None]]:
     return {
-        name: [None if np.isnan(x) else float(x) for x in getattr(curve, name)] for name in _COLUMNS
+        name: [None if np.isnan(x) else float(x) for x in getattr(curve, name)] for name in CURVE
     }
 
 

@@ -30,6 +30,9 @@ from ...core.arrays import Array, Integers
 _INNER, _OUTER = 0.01, 50.0  # [a]: a rigid speck at the first point, and where nothing moves
 _FLOOR = 1e-6  # least strain and strain rate: farther out it is as good as rigid
 _ORDER = 5  # of the quadrature
+# of the element sizes away from the die's edge, in log(distance/a) and in angle; half as many
+# elements a side move neither result by more than 0.15 %
+_GROWTH, _LARGEST = 1.4, 0.2
 _MOST_ROUNDS = 200
 _STILL = 1e-6
 
@@ -45,15 +48,13 @@ class Similar:
     pressure: float
 
 
-def similar(n: float, *, before: float = 0.0, growth: float = 1.4, largest: float = 0.2) -> Similar:
+def similar(n: float, *, before: float = 0.0) -> Similar:
     """Solve for velocities and plastic strains in turn until neither changes.
 
     - `n`: exponent of the plastic strain.
     - `before`: what the flow stress counts beside the plastic strain, K (e0 + p)^n, as e0 R c^2/a.
-    - `growth`, `largest`: of the element sizes away from the die's edge, in log(distance/a) and in
-      angle; half as many elements a side move neither result by more than 0.15 %.
     """
-    die = Die(growth, largest)
+    die = Die(_GROWTH, _LARGEST)
     viscosity = np.full(die.radius.shape, 1.0 / 3.0)
     found = Similar(math.nan, math.nan)
     for _ in range(_MOST_ROUNDS):

@@ -12,9 +12,9 @@ R = 1e-3
 RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
 
 
-def elastic_pair(*, nu: float = 0.3) -> Pair:
+def elastic_pair() -> Pair:
     """Two bodies of E = 200 GPa that never yield."""
-    body = Material(E=200e9, nu=nu)
+    body = Material(E=200e9, nu=0.3)
     return Pair(sphere=body, flat=body, R=R)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from ... import fem
 from ...core.output import write_file
 from ...core.provenance import environment
+from ...core.tables import markdown
 from .bench import Effort
 from .checks import CHECKS
 from .result import Measurement, Result, Table
@@ -131,12 +132,10 @@ def _measurement(m: Measurement) -> str:
 def _table(table: Table) -> Iterator[str]:
     yield f"{table.title}:"
     yield ""
-    yield "| " + " | ".join(table.columns) + " |"
-    yield "| " + " | ".join("---" for _ in table.columns) + " |"
-    for row in table.rows:
-        cells = (f"{x:.4g}" if isinstance(x, float) else _cell(str(x)) for x in row)
-        yield "| " + " | ".join(cells) + " |"
-    yield ""
+    rows = (
+        [f"{x:.4g}" if isinstance(x, float) else _cell(str(x)) for x in row] for row in table.rows
+    )
+    yield markdown([table.columns, *rows])
 
 
 def _cell(text: str) -> str:

@@ -47,7 +47,7 @@ def ours(pair: Pair) -> dict[str, Any]:
 
 def theirs(pair: Pair) -> dict[str, Any]:
     """The same by CalculiX."""
-    deck = Deck(problem_of(pair, turns=()), FINE, element="CAX4")
+    deck = Deck(problem_of(pair, turns=()), FINE)
     printed, spent = solve_deck(write_deck(deck))
     found = measure(deck, printed)
     return {"theirs_s": spent, "their_delta": found.delta.tolist(),

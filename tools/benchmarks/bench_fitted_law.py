@@ -33,7 +33,7 @@ def seconds(call, runs: int = 7) -> float:
 def speed() -> None:
     d = np.geomspace(1e-8, 1e-4, COUNT)
     times = {name: seconds(lambda law=LAWS[name]: law.loading(PAIR, d)) for name in
-             ("hertz", "jackson-green", "fitted")}  # fmt: skip
+             ("hertz", "jackson-green", "ghaednia", "fitted")}  # fmt: skip
     base = times["jackson-green"]
     print(f"{COUNT:,} forces of one pair")
     for name, value in times.items():

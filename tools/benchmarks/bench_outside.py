@@ -1,9 +1,10 @@
-"""Cost of an impact and of a force beside published laws: ratios of one run.
+"""Cost of an impact beside published laws: ratios of one run.
 
     .venv/bin/python tools/benchmarks/bench_outside.py
 
 Balls of steel straight on a harder flat, each at a speed of its own: our law by work and by steps,
 the thesis's law and Jackson and Green's by steps. Processor seconds of one core, the best of three.
+Forces alone: bench_fitted_law.py.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import math
 
 import numpy as np
 from bench_impact import FAST, best
-from dentscope.core import Material, Pair
+from dentscope.core import Material
 from dentscope.dynamics import (
     Approach,
     Striker,
@@ -29,21 +30,10 @@ BALL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
 FLAT = Material(E=210e9, nu=0.3, Sy=1500e6, density=7800.0)
 R = 5e-3
 MASS = 4.0 / 3.0 * math.pi * R**3 * BALL.density
-PAIR = Pair(BALL, FLAT, R)
 SLOW, QUICK = 0.5, 4.0
 
 
-def forces() -> None:
-    depth = R * 10.0 ** np.random.default_rng(2).uniform(-6.0, -1.5, 1_000_000)
-    names = ("hertz", "jackson-green", "ghaednia", "fitted")
-    laws = {name: LAWS[name] for name in names} | {"fitted, table": tabulated(LAWS["fitted"])}
-    for law in laws.values():
-        law.loading(PAIR, depth[:2])
-    found = {name: best(lambda x=law: x.loading(PAIR, depth)) for name, law in laws.items()}
-    report("forces of one pair", found, 1_000_000, base="jackson-green")
-
-
-def blows() -> None:
+def main() -> None:
     found: dict[str, float] = {}
     count = 20_000
     speeds = np.linspace(SLOW, QUICK, count)
@@ -65,11 +55,8 @@ def blows() -> None:
     plain = scenes["fitted"]
     impacts(plain, speeds=speeds[:2])
     found["fitted, by work"] = best(lambda: impacts(plain, speeds=speeds))
-    report("impacts", found, count, base="fitted, table, by steps")
-
-
-def report(what: str, found: dict[str, float], count: int, *, base: str) -> None:
-    print(f"{count:,} {what}")
+    base = "fitted, table, by steps"
+    print(f"{count:,} impacts")
     for name, seconds in found.items():
         ratio = seconds / found[base]
         print(f"  {name:36s} {seconds:8.3f} s {count / seconds:12,.0f} a second {ratio:7.2f}")
@@ -77,5 +64,4 @@ def report(what: str, found: dict[str, float], count: int, *, base: str) -> None
 
 
 if __name__ == "__main__":
-    forces()
-    blows()
+    main()

@@ -173,9 +173,9 @@ def stores(folder: Path, records: list[CaseRecord], sizes: list[int]) -> None:
     print(f"statuses of {sizes[-1]:,} cases: {gone:.2f} s, {peak:.0f} MB held")
     few = folder / "few"
     put_all(few, some)
-    gone, peak, _ = apart(_counted, Store(few).summaries)
+    gone, peak, _ = apart(_sized, Store(few).summaries)
     print(f"summaries of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms each")
-    gone, peak, _ = apart(_counted, Store(few).read_all)
+    gone, peak, _ = apart(_sized, Store(few).read_all)
     print(f"read_all of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms and "
           f"{peak / len(some):.2f} MB each")  # fmt: skip
 
@@ -204,15 +204,6 @@ def _sized(call: Callable[..., Any], *args: Any) -> int:
     return len(call(*args))
 
 
-def _rows(rows: dict[str, list[float]]) -> list[tuple[str, str, list[float]]]:
-    return [(name.split(" [")[0], name.split("[")[1][:-1], values) for name, values in rows.items()]
-
-
-def _counted(call: Callable[..., Any], *args: Any) -> int:
-    kept = call(*args)
-    return len(kept) if isinstance(kept, list) else 1
-
-
 def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int) -> None:
     """Published parts: read, made, and how many are allowed."""
     sums = (PUBLISHED / CHECKSUMS).read_text().splitlines()
@@ -228,7 +219,7 @@ def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int
                 lines.append(f"{digest}  {k}-{name}\n")
         (place / CHECKSUMS).write_text("".join(lines))
         size = sum(p.stat().st_size for p in place.glob("*.h5")) / 1e6
-        found.append((size, *apart(_counted, read_curves, place)))
+        found.append((size, *apart(_sized, read_curves, place)))
         shutil.rmtree(place)
     sizes = [row[3] for row in found]
     show("Published parts of so many cases (the parts copied)", sizes, [
@@ -266,7 +257,7 @@ def _part(records: list[CaseRecord]) -> int:
 
 def coordinator(records: list[CaseRecord], sizes: list[int]) -> None:
     """What the process that runs a campaign holds and computes for each case, stored or not."""
-    rows: dict[str, list[float]] = {}
+    taken: dict[str, list[float]] = {"ids": [], "cases": [], "orders": [], "forecast": []}
     for size in sizes:
         specs = [record.case.specification() for record in records]
         tracemalloc.start()
@@ -278,9 +269,9 @@ def coordinator(records: list[CaseRecord], sizes: list[int]) -> None:
         started = time.perf_counter()
         cases = distinct_cases(Design("bench", "", lambda m=made: m))
         gone = time.perf_counter() - started
-        rows.setdefault("ids of the cases [s]", []).append(gone)
-        rows.setdefault("held as cases [MB]", []).append(held / 1e6)
-        rows.setdefault("held as orders, own workers only [MB]", []).append((both - held) / 1e6)
+        taken["ids"].append(gone)
+        taken["cases"].append(held / 1e6)
+        taken["orders"].append((both - held) / 1e6)
         half = list(cases.values())
         ended = [(case, 30.0) for case in half[: size // 2]]
         forecast = Forecast(half[size // 2 :], workers=2, ended=ended)
@@ -288,11 +279,14 @@ def coordinator(records: list[CaseRecord], sizes: list[int]) -> None:
         for k in range(3):
             forecast.end(half[size // 2 + k], 30.0 * (k + 1))
             forecast.left_s(30.0 * (k + 1))
-        rows.setdefault("one forecast, after a case has ended [s]", []).append(
-            (time.perf_counter() - started) / 3
-        )
+        taken["forecast"].append((time.perf_counter() - started) / 3)
         del orders
-    show("A design of so many cases in the coordinator", sizes, _rows(rows))
+    show("A design of so many cases in the coordinator", sizes, [
+        ("ids of the cases", "s", taken["ids"]),
+        ("held as cases", "MB", taken["cases"]),
+        ("held as orders, own workers only", "MB", taken["orders"]),
+        ("one forecast, after a case has ended", "s", taken["forecast"]),
+    ])  # fmt: skip
 
 
 def _copies(specs: list[dict[str, Any]], size: int) -> Iterable[Case]:

@@ -23,6 +23,7 @@ from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, Rate, tabulated
 from dentscope.discrepancy.metal import metal_of
 from dentscope.recordings import read
+from dentscope.studies.verification.checks.impact_strength import clock
 
 # true stress [MPa] at the plastic strains P of tension tests whose data are public: 6061-T6 of
 # github.com/sandialabs/matcal (BSD), the next three of github.com/bezborodow/stress-strain (public
@@ -43,7 +44,6 @@ CURVES |= {name: tuple(zip(P, stress, strict=False)) for name, stress in STRESSE
 RATES = {"ASTM 1016": (1.90, 0.2), "316L": (1.26, 0.1), "aluminium 6061-T6": (0.2, 0.1)}
 R, BALL, DENSITY = 1.5e-3, Material(E=630e9, nu=0.21), 15600.0
 DEPTHS, STRUCK = (0.005, 0.015, 0.04, 0.09), (0.01, 0.03)
-SLOWEST = 0.05  # of the approach speed: where the clock ends
 ERRORS = {"load_N": 0.005, "dent_diameter_m": 0.01, "permanent_depth_m": 0.02}
 STATED = 0.15  # error of the strength
 FINE = fem.Accuracy.production()
@@ -85,7 +85,7 @@ def struck(name: str, presses: list[dict[str, float]]) -> list[dict[str, float]]
         stronger = 1.0 + rise * (0.4 * slow / math.sqrt(2.0 * depth) / R / 1000.0) ** n
         problem = fem.ContactProblem(
             quick, fem.geometric_depths(1e-2 * depth, depth, 48), unload_from=(depth,),
-            speeds=_clock(depth, slow * math.sqrt(stronger)),
+            speeds=clock(depth, slow * math.sqrt(stronger)),
         )  # fmt: skip
         found = fem.solve(problem, accuracy=FINE)
         delta, force = (np.append(0.0, x) for x in (found.loading.delta, found.loading.force))
@@ -100,13 +100,6 @@ def struck(name: str, presses: list[dict[str, float]]) -> list[dict[str, float]]
 def _speed(energy: float) -> float:
     """Speed of the ball at an energy."""
     return math.sqrt(2.0 * energy / (4.0 / 3.0 * math.pi * R**3 * DENSITY))
-
-
-def _clock(depth: float, speed: float) -> tuple[tuple[float, float], ...]:
-    """Speed by depth of a ball that slows down as a spring's load does."""
-    x = np.linspace(0.0, 1.0, 12)
-    v = speed * np.sqrt(np.maximum(1.0 - x**2, SLOWEST**2))
-    return tuple(zip((x * depth).tolist(), v.tolist(), strict=True))
 
 
 def told(name: str, marks: list[dict[str, float]], folder: Path) -> dict[str, list[float]]:

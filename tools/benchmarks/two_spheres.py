@@ -44,10 +44,8 @@ def forces(metal: Material, ratio: float, level: str) -> np.ndarray:
     joint = 1.0 / (1.0 + 1.0 / ratio) if ratio else 1.0  # over the sphere's radius
     pair = Pair(metal, metal, 1e-3)
     deepest = APPROACHES[-1] * joint
-    problem = fem.ContactProblem(
-        pair=pair, depths=fem.geometric_depths(0.3 * pair.first_yield, deepest, 30),
-        unload_from=(), speeds=(),
-    )  # fmt: skip
+    depths = fem.geometric_depths(0.3 * pair.first_yield, deepest, 30)
+    problem = fem.ContactProblem(pair, depths)
     straight = discretise.contact_mesh
 
     def mesh(**given: object) -> Mesh:

@@ -16,47 +16,33 @@ import math
 
 import numpy as np
 import scipy.sparse as sp
+import skfem
 from dentscope.core import Material, Pair
 from dentscope.dynamics import Approach, Scene, Striker, strike
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.models import LAWS
 from dentscope.models.base import ContactLaw
+from skfem.helpers import ddot, sym_grad
 
 E, NU, RHO = 2.06e11, 0.3, 7800.0
-GAUSS = 1.0 / math.sqrt(3.0)
 
 
 def matrices(nr: int, nz: int, dr: float, dz: float) -> tuple[sp.csr_matrix, np.ndarray]:
     """Stiffness and lumped masses of a grid of bilinear rings; node i (nz + 1) + j, z downwards."""
+    mesh = skfem.MeshQuad.init_tensor(dr * np.arange(nr + 1), dz * np.arange(nz + 1))
+    basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad1()), intorder=3)
+    mass = skfem.LinearForm(lambda v, w: 2.0 * math.pi * RHO * w.x[0] * v)
+    lumped = mass.assemble(basis.with_element(skfem.ElementQuad1()))
+    return skfem.BilinearForm(_work).assemble(basis).tocsr(), np.repeat(lumped, 2)
+
+
+def _work(u, v, w):
+    """Elastic work of the strains of u on those of v, all around the axis."""
     lam, mu = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), E / (2.0 * (1.0 + NU))
-    D = np.diag([lam + 2 * mu] * 3 + [mu]) + lam * (np.pad(np.ones((3, 3)) - np.eye(3), (0, 1)))
-    i, j = (x.ravel() for x in np.meshgrid(np.arange(nr), np.arange(nz), indexing="ij"))
-    first = i * (nz + 1) + j
-    nodes = np.stack([first, first + nz + 1, first + nz + 2, first + 1], axis=1)
-    K, M = np.zeros((len(i), 8, 8)), np.zeros((len(i), 4))
-    for a in (-GAUSS, GAUSS):
-        for b in (-GAUSS, GAUSS):
-            N = (
-                0.25
-                * np.array([1 - a, 1 + a, 1 + a, 1 - a])
-                * np.array([1 - b, 1 - b, 1 + b, 1 + b])
-            )
-            along = 0.5 * np.array([b - 1, 1 - b, 1 + b, -1 - b]) / dr
-            down = 0.5 * np.array([a - 1, -1 - a, 1 + a, 1 - a]) / dz
-            r = dr * (i + 0.5 * (1.0 + a))
-            weight = 0.5 * math.pi * r * dr * dz
-            B = np.zeros((len(i), 4, 8))
-            B[:, 0, 0::2], B[:, 1, 1::2], B[:, 2, 0::2] = along, down, N / r[:, None]
-            B[:, 3, 0::2], B[:, 3, 1::2] = down, along
-            K += np.einsum("e,eki,kl,elj->eij", weight, B, D, B, optimize=True)
-            M += RHO * weight[:, None] * N
-    dof = np.stack([2 * nodes, 2 * nodes + 1], axis=2).reshape(len(i), 8)
-    size = 2 * (nr + 1) * (nz + 1)
-    rows, cols = np.repeat(dof, 8, axis=1).ravel(), np.tile(dof, (1, 8)).ravel()
-    mass = np.zeros(size // 2)
-    np.add.at(mass, nodes.ravel(), M.ravel())
-    return sp.csr_matrix((K.ravel(), (rows, cols)), shape=(size, size)), np.repeat(mass, 2)
+    (a, b), r = (sym_grad(u), sym_grad(v)), w.x[0]
+    trace = (a[0, 0] + a[1, 1] + u[0] / r) * (b[0, 0] + b[1, 1] + v[0] / r)
+    return 2.0 * math.pi * r * (lam * trace + 2.0 * mu * (ddot(a, b) + u[0] * v[0] / r**2))
 
 
 class Contact:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from dentscope.cli.shared.keys import FILES, keys_of
 from dentscope.core.inputs.materials import materials
+from dentscope.core.tables import markdown
 from dentscope.models import LAWS, UNAVAILABLE
 from dentscope.models.export.sources import NAME, javascript_source
 from dentscope.start import material
@@ -114,10 +115,9 @@ def laws_page() -> str:
         for law in LAWS.values()
     ]
     head = ("law", "authors", "made for", "equations", "what was read", "source")
-    lines = [head, ("---",) * len(head), *rows]
-    table = "\n".join("| " + " | ".join(map(_cell, row)) + " |" for row in lines)
+    table = markdown([head, *(list(map(_cell, row)) for row in rows)])
     left = "\n".join(f"- **{name}**: {reason}" for name, reason in UNAVAILABLE.items())
-    return f"# Contact laws\n\n{table}\n\n## Not offered, and why\n\n{left}\n"
+    return f"# Contact laws\n\n{table}\n## Not offered, and why\n\n{left}\n"
 
 
 def examples_page() -> str:

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....campaigns.cases.pairs import table_2_1
 from ....core.arrays import Array
 from ....core.material import Pair
 from ....models import LAWS, critical_depth
 from ....models.published import hardness
-from ....models.published.ghaednia import share_of_sphere
-from ...plot import Entry, Picture, at_depth, finish, sheet, table_2_1
+from ...plot import Entry, Picture, at_depth, finish, sheet
 from . import compared, fields, steps, tables
 from .claims import judged
 from .quantities import (
@@ -23,6 +23,7 @@ from .quantities import (
     beside_points,
     case_records,
     force,
+    model_share,
     of_record,
     pressure,
     radius,
@@ -69,23 +70,19 @@ def _share_five_cases(records: Sequence[CaseRecord]) -> Picture:
     made, (axis,) = sheet()
     off = []
     for case in range(1, 6):
-        shares = [_share(table_2_1(case, s)) for s in RATIOS]
+        shares = [model_share(table_2_1(case, s)) for s in RATIOS]
         axis.semilogx(RATIOS, shares, color=f"C{case}", label=f"case {case}, 2.13-2.16")
         for ratio, record in case_records(records, case):
             found = at_depth(record, DEPTH)
             if found:
                 value = found["sphere"] / (DEPTH * record.case.pair.R)
                 axis.plot(ratio, value, "o", ms=4, color=f"C{case}")
-                off.append(abs(_share(record.case.pair) - value))
+                off.append(abs(model_share(record.case.pair) - value))
     finish(axis, x="Sy*", y="delta_s*", legend="circles: our finite elements")
     note = "The curves have the thesis's plateau near 0.9 and its step at Sy* = 1."
     if off:
         note += f" Mean difference from {len(off)} of our points: {np.mean(off):.3f}."
     return Picture("2.5", "Share of the sphere, Delta/R = 0.04", made, note)
-
-
-def _share(pair: Pair) -> float:
-    return share_of_sphere(DEPTH, pair.E_reduced / pair.Sy_min, pair.Sy_ratio, 1.0)
 
 
 def _pressure_over_depth(records: Sequence[CaseRecord]) -> Picture:
@@ -165,7 +162,7 @@ def _off(law: Callable[[Array], Array], points: Array) -> float:
 
 def _share_case(records: Sequence[CaseRecord]) -> Picture:
     made, (axis,) = sheet()
-    axis.semilogx(RATIOS, [_share(table_2_1(3, s)) for s in RATIOS], "C3", label="2.13-2.16")
+    axis.semilogx(RATIOS, [model_share(table_2_1(3, s)) for s in RATIOS], "C3", label="2.13-2.16")
     if "fitted" in LAWS and hasattr(LAWS["fitted"], "share"):
         D = DEPTH * 1e-3
         ours = [float(LAWS["fitted"].share(table_2_1(3, s), D)) for s in RATIOS]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ....campaigns import CaseRecord
-from ....core.material import Pair
 from ....dynamics.integrate import strike
 from ....dynamics.result import Impact
-from ....dynamics.scene import Approach, Striker, scene_of
 from ....models import LAWS, critical_depth, critical_force, law_named
 from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, percent, sheet
@@ -39,13 +38,9 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     ]
 
 
-def _pair(found: chapter3.Bench) -> Pair:
-    return Pair(found.sphere, found.flat, found.striker.tip_radius)
-
-
 def _force(found: chapter3.Bench) -> Picture:
     made, (axis,) = sheet()
-    pair = _pair(found)
+    pair = found.pair
     w = np.geomspace(0.5, 2500.0, 400)
     d = w * critical_depth(pair)
     for law in laws("jackson-green-2007", "ghaednia", "fitted"):
@@ -78,7 +73,7 @@ def _force(found: chapter3.Bench) -> Picture:
 
 def _residual(found: chapter3.Bench) -> Picture:
     made, (axis,) = sheet()
-    pair = _pair(found)
+    pair = found.pair
     peak = np.geomspace(2.0 * critical_depth(pair), 300e-6, 200)
     for law in laws(*_ORIGINAL, "thornton-ning"):
         axis.loglog(peak * 1e6, sum(law.residual(pair, peak)) * 1e6, **look(law))
@@ -217,19 +212,14 @@ def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
 
 def _small_tip(found: chapter3.Bench) -> str:
     """Thornton and Ning's depth if the tip had the rod's own radius."""
-    pair = Pair(found.sphere, found.flat, found.striker.radius)
-    rows = [row for row in found.measured if row["observable"] == "residual_depth"]
-    rod = Striker(found.striker.mass, found.striker.radius, found.striker.length,
-                  found.striker.radius)  # fmt: skip
+    rod = replace(found.striker, tip_radius=found.striker.radius)
+    blunt, law = replace(found, striker=rod), LAWS["thornton-ning"]
     times = [
-        strike(
-            scene_of(
-                LAWS["thornton-ning"], sphere=pair.sphere, flat=pair.flat, striker=rod,
-                approach=Approach.dropped(row["drop_height_m"]),
-            )
-        ).residual_m / row["value"]
-        for row in rows
-    ]  # fmt: skip
+        strike(blunt.scene(law, height=row["drop_height_m"], mass=rod.mass)).residual_m
+        / row["value"]
+        for row in found.measured
+        if row["observable"] == "residual_depth"
+    ]
     return (
         f"With a tip of the rod's own radius, {1e3 * found.striker.radius:g} mm instead of 136.5, "
         f"Thornton and Ning's would be {min(times):.1f} to {max(times):.1f} times."

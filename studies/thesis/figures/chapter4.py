@@ -16,8 +16,8 @@ from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, sheet
 from .. import chapter5
 from ..chapter3 import REFERENCE
+from ..chapter5 import scene_at
 from .chapter4_said import HISTORY_SAID, SWEEP_SAID, Swept, Values
-from .thesis_rod import scene_at
 
 NINE = ("jackson-green-2007", "ghaednia", "kogut-etsion-continued", "kogut-komvopoulos",
         "ye-komvopoulos", "brake-2015", "brake-2012", "stronge", "thornton", "fitted")  # fmt: skip

@@ -44,11 +44,6 @@ def _steels(sphere: float, flat: float) -> Pair:
     )  # fmt: skip
 
 
-def _chapter_3() -> Pair:
-    found = chapter3.bench()
-    return Pair(found.sphere, found.flat, found.striker.tip_radius)
-
-
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """A field picture: pair, depth, what the thesis says, how far the solve goes on."""
@@ -67,7 +62,7 @@ WANTED = dict(zip(FIELDS, (
            "large parts of both bodies yield"),
     Wanted("von Mises stress, Sy* = 10", lambda: _steels(5030e6, 503e6), 0.02,
            "the flat yields also outside the contact, the sphere does not"),
-    Wanted("Mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
+    Wanted("Mesh and von Mises stress of chapter 3", lambda: chapter3.bench().pair, 148e-6 / 0.1365,
            "", last=0.1),
 ), strict=True))  # fmt: skip
 """Field pictures by figure number; the thesis gives no depth for 2.2-2.4. The solve of 3.7 goes on

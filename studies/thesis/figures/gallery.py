@@ -10,6 +10,7 @@ from pathlib import Path
 from ....campaigns import CaseRecord, read_curves, read_published
 from ....core.errors import InputError
 from ....core.output import write_file
+from ....core.tables import markdown
 from ....models import DomainWarning
 from ...plot import Entry, Picture, Table
 from . import chapter1, chapter2, chapter3, chapter45
@@ -108,8 +109,11 @@ def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
     lines = [f"# Chapter {chapter}\n\nFinite elements: {rests}.\n"]
     for one in entries:
         name = _name(one)
-        shown = one.markdown if isinstance(one, Table) else f"![{name}]({one.file})"
-        lines.append(f"## {name}: {one.title}\n\n{shown}\n\n{one.note}\n")
+        if isinstance(one, Table):
+            shown = markdown([one.header, *one.rows])
+        else:
+            shown = f"![{name}]({one.file})\n"
+        lines.append(f"## {name}: {one.title}\n\n{shown}\n{one.note}\n")
     return "\n".join(lines)
 
 

@@ -7,10 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....campaigns.cases.pairs import table_2_1
 from ....core.arrays import Array
 from ....core.material import Pair
 from ....models.base import ContactLaw
-from ...plot import at_depth, laws, same, table_2_1
+from ....models.published.ghaednia import share_of_sphere
+from ...plot import at_depth, laws, same
 
 DEPTH = 0.04
 """Delta/R of the thesis's comparisons."""
@@ -33,6 +35,11 @@ def force(law: ContactLaw, pair: Pair, D: Array) -> Array:
 def pressure(law: ContactLaw, pair: Pair, D: Array) -> Array:
     """Mean pressure over Sy_min."""
     return law.hardness(pair, D * pair.R) / pair.Sy_min
+
+
+def model_share(pair: Pair, D: float = DEPTH) -> float:
+    """The sphere's share of the approach by the thesis's model."""
+    return share_of_sphere(D, pair.E_reduced / pair.Sy_min, pair.Sy_ratio, 1.0)
 
 
 def of_record(quantity: Quantity, record: CaseRecord, D: float) -> float:

@@ -10,12 +10,14 @@ import numpy as np
 from matplotlib import colormaps
 
 from ....campaigns import CaseRecord
+from ....campaigns.cases.pairs import table_2_1
 from ....core.material import Material, Pair
 from ....models import LAWS, critical_depth
 from ....models.fitted import ClosedForm
-from ....models.published.ghaednia import share_of_sphere, updated_jackson_green
-from ...plot import Picture, at_depth, bare_sheet, finish, look, percent, same, sheet, table_2_1
+from ....models.published.ghaednia import updated_jackson_green
+from ...plot import Picture, at_depth, bare_sheet, finish, look, percent, sheet
 from .claims import judged
+from .quantities import case_records, model_share, of_record, radius
 
 _DEPTHS = (0.01, 0.02, 0.04, 0.06, 0.08)
 _RATIOS = np.geomspace(0.1, 10.0, 121)
@@ -33,10 +35,6 @@ def pictures(records: Sequence[CaseRecord]) -> list[Picture]:
     ]
 
 
-def _model_share(pair: Pair, D: float) -> float:
-    return share_of_sphere(D, pair.E_reduced / pair.Sy_min, pair.Sy_ratio, 1.0)
-
-
 def _fitted() -> ClosedForm | None:
     found = LAWS.get("fitted")
     return found if isinstance(found, ClosedForm) else None
@@ -49,7 +47,7 @@ def _depths(records: Sequence[CaseRecord]) -> Picture:
     pairs = [table_2_1(4, float(s)) for s in _RATIOS]
     for colour, D in zip(colours, _DEPTHS, strict=True):
         label = f"Delta/R = {D:g}"
-        axes[0].semilogx(_RATIOS, [_model_share(p, D) for p in pairs], color=colour, label=label)
+        axes[0].semilogx(_RATIOS, [model_share(p, D) for p in pairs], color=colour, label=label)
         if fitted is not None:
             ours = [float(fitted.share(p, D * p.R)) for p in pairs]
             axes[1].semilogx(_RATIOS, ours, color=colour, label=label)
@@ -57,7 +55,7 @@ def _depths(records: Sequence[CaseRecord]) -> Picture:
         axis.set_title(name, fontsize=9)
         axis.set_ylim(-0.05, 1.05)
         finish(axis, x="Sy* = Sy_sphere/Sy_flat", y="share of the sphere delta_s*")
-    note = f"The thesis: at most about 10 % between the depths. 2.13-2.16: {_spread(_model_share)}"
+    note = f"The thesis: at most about 10 % between the depths. 2.13-2.16: {_spread(model_share)}"
     if fitted is not None:
         ours_at = _spread(lambda p, D: float(fitted.share(p, D * p.R)))
         note += f"; ours: {ours_at}. Ours joins the two sides smoothly, the thesis's jumps at 1"
@@ -78,9 +76,7 @@ def _surface() -> Picture:
     axis: Any = made.add_subplot(projection="3d")
     depths = np.linspace(0.005, 0.08, 40)
     x, y = np.meshgrid(np.log10(_RATIOS), depths)
-    z = np.array(
-        [[_model_share(table_2_1(4, float(s)), float(D)) for s in _RATIOS] for D in depths]
-    )
+    z = np.array([[model_share(table_2_1(4, float(s)), float(D)) for s in _RATIOS] for D in depths])
     axis.plot_surface(x, y, z, cmap="viridis", rcount=40, ccount=121, linewidth=0.0)
     axis.set_xticks([-1.0, -0.5, 0.0, 0.5, 1.0])
     axis.set_yticks([0.02, 0.04, 0.06, 0.08])
@@ -89,7 +85,7 @@ def _surface() -> Picture:
     axis.set_zlabel("delta_s*")
     axis.view_init(elev=28.0, azim=-50.0)
     step = [
-        _model_share(table_2_1(4, 1.0), D) - _model_share(table_2_1(4, 1.0 + 1e-9), D)
+        model_share(table_2_1(4, 1.0), D) - model_share(table_2_1(4, 1.0 + 1e-9), D)
         for D in (0.005, 0.04, 0.08)
     ]
     note = (
@@ -104,7 +100,7 @@ def _modulus(records: Sequence[CaseRecord]) -> Picture:
     q = np.geomspace(60.0, 3000.0, 60)
     D = 0.04
     pairs = [_steel_pair(float(v)) for v in q]
-    model = np.array([_model_share(p, D) for p in pairs])
+    model = np.array([model_share(p, D) for p in pairs])
     axis.loglog(q, model, "C3", lw=2.0, label="2.15-2.16, (E'/Sy)^-0.7")
     fitted = _fitted()
     if fitted is not None:
@@ -166,7 +162,8 @@ def _updated(records: Sequence[CaseRecord]) -> Picture:
         ours = [float(LAWS["fitted"].contact_radius(p, D * R)) / R for p in pairs]
         axis.semilogx(_RATIOS, ours, **look(LAWS["fitted"]))
     axis.axhline(truncated, color="0.5", ls=":", label="truncated, sqrt(1 - (1 - D)^2)")
-    points = _radii_of_case_4(records, D)
+    radii = [(ratio, of_record(radius, r, D)) for ratio, r in case_records(records, 4)]
+    points = sorted(one for one in radii if np.isfinite(one[1]))
     if points:
         axis.plot(*zip(*points, strict=True), "ko", ms=4, mfc="w", label="our finite elements")
     axis.set_ylim(0.22, 0.31)
@@ -187,18 +184,6 @@ def _updated(records: Sequence[CaseRecord]) -> Picture:
         ("the largest difference of that form is 3.2 %", abs(abs(off[worst]) - 0.032) < 0.005),
     )
     return Picture("2.12", "Contact radius of case 4 and the updated Jackson-Green", made, note)
-
-
-def _radii_of_case_4(records: Sequence[CaseRecord], D: float) -> list[tuple[float, float]]:
-    """Sy* and a/R of the stored cases, in order."""
-    found = []
-    for record in records:
-        pair = record.case.pair
-        if 0.05 <= pair.Sy_ratio <= 20.0 and same(record, table_2_1(4, pair.Sy_ratio)):
-            there = at_depth(record, D)
-            if there:
-                found.append((pair.Sy_ratio, there["radius"] / pair.R))
-    return sorted(found)
 
 
 def _difference(records: Sequence[CaseRecord]) -> Picture:

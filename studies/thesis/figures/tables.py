@@ -6,13 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ....campaigns.cases.pairs import TABLE_2_1, table_2_1
 from ....core.inputs.toml_input import read_toml
 from ....dynamics.inverse import Inferred
 from ....dynamics.result import Impact
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015
-from ...plot import TABLE_2_1, Table, laws, line_of, table_2_1
+from ...plot import Table, laws, line_of
 from .. import chapter5
 from ..chapter3 import REFERENCE
 from .claims import judged
@@ -24,13 +25,13 @@ _MEASURED_H, _MEASURED_N = 53.0, 2.1  # kgf/mm^2 and Meyer exponent at which Bra
 def table_2_1_again() -> Table:
     """Table 2.1 with what follows from it."""
     rows = []
-    for number, (E_s, E_f, S, nu) in TABLE_2_1.items():
+    for number, (E_s, E_f, S, nu, _) in TABLE_2_1.items():
         pair = table_2_1(number, 0.1)
         onset = critical_depth(pair)
         rows.append([
-            f"{number}", f"{E_s / 1e9:g}", f"{E_f / 1e9:g}", f"{S / 1e6:g}", f"{nu:g}", "0.3",
-            f"{pair.E_reduced / 1e9:.1f}", f"{pair.E_reduced / S:.0f}", f"{onset * 1e9:.1f}",
-            f"{0.04 * pair.R / onset:.0f}",
+            f"{number}", f"{E_s:g}", f"{E_f:g}", f"{S:g}", f"{nu:g}", "0.3",
+            f"{pair.E_reduced / 1e9:.1f}", f"{pair.E_reduced / pair.Sy_min:.0f}",
+            f"{onset * 1e9:.1f}", f"{0.04 * pair.R / onset:.0f}",
         ])  # fmt: skip
     return Table(
         "2.1", "The five cases",

@@ -12,10 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from .... import fem
-from ....core.arrays import Array, Integers
+from ....core.arrays import Integers
 from ....core.material import Material
 from ....fem.discretise import Discretisation, discretise
 
+ELEMENT = "CAX4"
+"""Four nodes, full integration."""
+
+_STIFFNESS = 1e9  # contact pressure over penetration [MPa/R]
 _FIRST, _LAST, _ROWS = 1e-5, 5.0, 150  # plastic strains of a table
 
 
@@ -25,14 +29,10 @@ class Deck:
 
     - `problem`: pair and depths; every depth becomes a step.
     - `accuracy`: settings whose mesh is used.
-    - `element`: `"CAX4"` (four nodes, full integration) or `"CAX8R"` (eight nodes, reduced).
-    - `stiffness`: contact pressure over penetration [MPa/R].
     """
 
     problem: fem.ContactProblem
     accuracy: fem.Accuracy
-    element: str = "CAX8R"
-    stiffness: float = 1e9
 
     @property
     def grid(self) -> Discretisation:
@@ -44,22 +44,17 @@ def write_deck(deck: Deck) -> str:
     """Return the text of the deck."""
     grid = deck.grid
     mesh = grid.mesh
-    points, quads = mesh.points, mesh.quads
-    top, far, axis = mesh.top, mesh.far, np.flatnonzero(mesh.points[:, 0] == 0.0)
-    if deck.element == "CAX8R":
-        points, quads, middle = _with_middle_nodes(grid)
-        top, far, axis = (np.concatenate([s, _between(s, middle)]) for s in (top, far, axis))
-    n = mesh.n_sphere_quads
+    n, quads = mesh.n_sphere_quads, mesh.quads
     lines = ["*HEADING", "sphere on flat, lengths in R, stresses in MPa", "*NODE, NSET=ALL"]
-    lines += [f"{i + 1},{x:.12g},{y:.12g},0." for i, (x, y) in enumerate(points)]
+    lines += [f"{i + 1},{x:.12g},{y:.12g},0." for i, (x, y) in enumerate(mesh.points)]
     for name, part, first in (("SPHERE", quads[:n], 0), ("FLAT", quads[n:], n)):
-        lines.append(f"*ELEMENT, TYPE={deck.element}, ELSET=E{name}")
+        lines.append(f"*ELEMENT, TYPE={ELEMENT}, ELSET=E{name}")
         for e, row in enumerate(part, start=first + 1):
             lines.append(",".join(str(x) for x in (e, *(int(i) + 1 for i in row))))
     for name, nodes in (
-        ("TOP", top),
-        ("FAR", far),
-        ("AXIS", axis),
+        ("TOP", mesh.top),
+        ("FAR", mesh.far),
+        ("AXIS", np.flatnonzero(mesh.points[:, 0] == 0.0)),
         ("SLAVE", mesh.sphere_surface),
         ("MASTER", mesh.flat_surface),
     ):
@@ -73,7 +68,7 @@ def write_deck(deck: Deck) -> str:
     lines += [
         "*SURFACE INTERACTION, NAME=SMOOTH",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-        f"{deck.stiffness:g}",
+        f"{_STIFFNESS:g}",
         "*CONTACT PAIR, INTERACTION=SMOOTH, TYPE=SURFACE TO SURFACE",
         "SSLAVE, SMASTER",
         "*BOUNDARY",
@@ -130,36 +125,3 @@ def _surface(name: str, quads: Integers, nodes: Integers) -> Iterator[str]:
     inside = np.isin(quads, nodes)
     for e, side in zip(*np.nonzero(inside & np.roll(inside, -1, axis=1)), strict=True):
         yield f"{e + 1},S{side + 1}"
-
-
-def _with_middle_nodes(
-    grid: Discretisation,
-) -> tuple[Array, Integers, dict[tuple[int, int], int]]:
-    """Eight-node elements: a node on the middle of every edge, of the sphere's on the sphere."""
-    points, quads = grid.mesh.points, grid.mesh.quads
-    n = len(points)
-    ball = np.abs(np.hypot(points[:, 0], points[:, 1] - 1.0) - 1.0) < 1e-9
-    ball &= np.arange(n) < grid.mesh.n_sphere_points
-    middle: dict[tuple[int, int], int] = {}
-    added: list[Array] = []
-    rows = []
-    for quad in quads:
-        row = list(quad)
-        for a, b in zip(quad, np.roll(quad, -1), strict=True):
-            key = (min(int(a), int(b)), max(int(a), int(b)))
-            if key not in middle:
-                middle[key] = n + len(added)
-                x = 0.5 * (points[a] + points[b])
-                if ball[a] and ball[b]:
-                    arm = x - np.array([0.0, 1.0])
-                    x = np.array([0.0, 1.0]) + arm / np.linalg.norm(arm)
-                added.append(x)
-            row.append(middle[key])
-        rows.append(row)
-    return np.vstack([points, *added]), np.array(rows), middle
-
-
-def _between(nodes: Integers, middle: dict[tuple[int, int], int]) -> Integers:
-    """Middle nodes of the edges both of whose ends are in `nodes`."""
-    inside = set(nodes.tolist())
-    return np.array([m for (a, b), m in middle.items() if a in inside and b in inside], dtype=int)

@@ -19,7 +19,7 @@ from ....core.errors import InputError
 from ....fem.contact import POINTS, ContactState, contact_forces
 from ....fem.discretise import Discretisation
 from ....fem.results.measure import edge_of_contact
-from .deck import Deck, write_deck
+from .deck import ELEMENT, Deck, write_deck
 
 _COMMAND = "ccx"
 _WEDGE = 180.0  # CalculiX turns axisymmetric elements into a wedge of 2 degrees
@@ -32,13 +32,12 @@ FOLDER = Path(__file__).resolve().parents[3] / "data" / "reference" / "calculix"
 class Reference:
     """What CalculiX gave; lengths in R, force in MPa R^2, one entry a depth reached.
 
-    - `element`, `version`: element and version of CalculiX.
+    - `version`: of CalculiX.
     - `cpu_s`: processor seconds.
     - `unknowns`: twice the number of nodes in the meridian plane.
     - `delta`, `force`, `radius`, `share`: results, shape (n,).
     """
 
-    element: str
     version: str
     cpu_s: float
     unknowns: int
@@ -56,7 +55,7 @@ def run_deck(deck: Deck, *, name: str) -> Reference:
         with gzip.GzipFile(FOLDER / f"{name}.{ending}.gz", "wb", mtime=0) as stream:
             stream.write(content.encode())
     release = _version()
-    about = {"element": deck.element, "version": release, "cpu_s": round(cpu, 1)}
+    about = {"element": ELEMENT, "version": release, "cpu_s": round(cpu, 1)}
     (FOLDER / f"{name}.json").write_text(json.dumps(about, indent=1) + "\n")
     return measure(deck, printed, cpu_s=cpu, version=release)
 
@@ -117,10 +116,8 @@ def measure(deck: Deck, printed: str, *, cpu_s: float = 0.0, version: str = "") 
         flat = -moved[int(master[0])][1]
         a = edge_of_contact(_touching(grid, contact, x), x[slave, 0])
         found.append((depth, _WEDGE * abs(reaction), a, float(sphere / (sphere + flat))))
-    corners = len(grid.mesh.points)
-    nodes = corners if deck.element == "CAX4" else 4 * corners - 1
     columns = np.array(found).reshape(-1, 4).T
-    return Reference(deck.element, version, cpu_s, 2 * nodes, *columns)
+    return Reference(version, cpu_s, 2 * len(grid.mesh.points), *columns)
 
 
 def _touching(grid: Discretisation, contact: ContactState, x: Array) -> ContactState:

@@ -208,7 +208,7 @@ def _impact(bench: Bench, metal: Metal | None, R: float, speed: float) -> Array:
         clocked = metal is not None and metal.flow.rate is not None
         problem = fem.ContactProblem(
             pair, fem.geometric_depths(1e-2 * depth, depth, _DEPTHS), unload_from=(depth,),
-            speeds=_clock(depth, speed) if clocked else (),
+            speeds=clock(depth, speed) if clocked else (),
         )  # fmt: skip
         solved = bench.solve(Case(name, problem, fem.Accuracy.quick()))
         delta, force = (np.append(0.0, solved[k]) for k in ("delta", "force"))
@@ -221,7 +221,8 @@ def _impact(bench: Bench, metal: Metal | None, R: float, speed: float) -> Array:
     return np.array([math.sqrt(back / spent), float(np.max(force)), turned.residual_flat])
 
 
-def _clock(depth: float, speed: float) -> tuple[tuple[float, float], ...]:
+def clock(depth: float, speed: float) -> tuple[tuple[float, float], ...]:
+    """Speed by depth of a ball that slows down as a spring's load does."""
     x = np.linspace(0.0, 1.0, 12)
     slowing = np.sqrt(np.maximum(1.0 - x**2, _SLOWEST**2))
     return tuple((float(a * depth), float(speed * b)) for a, b in zip(x, slowing, strict=True))

@@ -42,7 +42,7 @@ class Twin:
     def deck(self, finer: int) -> Deck:
         """The same for CalculiX, `finer` times as many increments."""
         problem = fem.ContactProblem(self.pair, self._depths(finer))
-        return Deck(problem, self.accuracy, element="CAX4")
+        return Deck(problem, self.accuracy)
 
     def _depths(self, finer: int) -> tuple[float, ...]:
         first = 0.3 * self.pair.first_yield

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
-from dentscope.studies.verification import Effort
-from dentscope.studies.verification.bench import Branch, Solved
+from dentscope.studies.verification.bench import Branch, Effort, Solved
 from dentscope.studies.verification.checks.convergence import difference, ordered_cases, plan_of
 from dentscope.studies.verification.checks.flattening import _kogut_etsion
 from dentscope.studies.verification.checks.locking import _tube
@@ -72,8 +71,7 @@ def test_kogut_and_etsion_meet_hertz_at_first_yield_and_their_own_branches():
 def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, capsys):
     from dentscope.cli import run
     from dentscope.studies.commands.verify import EXIT_MISSED
-    from dentscope.studies.verification import Measurement, Result
-    from dentscope.studies.verification.result import write_result
+    from dentscope.studies.verification.result import Measurement, Result, write_result
 
     folder, report = tmp_path / "build", tmp_path / "docs" / "verification.md"
     asked = ["verify", "--only", "patch", "--quick", "--folder", str(folder)]
