@@ -56,7 +56,7 @@ def code_lines(text: str, tree: ast.Module) -> set[int]:
     return found
 
 
-def measured_python(row: Row, path: Path) -> None:
+def add_module(row: Row, path: Path) -> None:
     """Add a module to its part."""
     text = path.read_text(encoding="utf-8")
     tree = ast.parse(text)
@@ -70,16 +70,6 @@ def measured_python(row: Row, path: Path) -> None:
         called = node.func if isinstance(node, ast.Call) else None
         chosen = isinstance(called, ast.Name) and called.id == "rule"
         row["numbers"] += path.name == "rules.py" and chosen
-
-
-def measured_c(row: Row, path: Path) -> None:
-    """Add a file of C: its lines without blanks and comments."""
-    text = re.sub(r"/\*.*?\*/", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
-    lines = [re.sub(r"//.*", "", line) for line in text.splitlines()]
-    row["lines"] += path.read_text(encoding="utf-8").count("\n")
-    row["code"] += sum(bool(line.strip()) for line in lines)
-    row["modules"] += 1
-    row["line"] = max(row["line"], *(len(line) for line in [*lines, ""]))
 
 
 def complexities(parts: Iterable[str]) -> dict[str, list[int]]:
@@ -103,9 +93,8 @@ def measured() -> dict[str, Row]:
     rows: dict[str, Row] = {}
     for part in parts():
         row = rows[part] = dict.fromkeys((*SIZES, *DENSITY), 0.0)
-        for path in sorted((ROOT / part).rglob("*.[cp]*")):
-            if path.suffix in (".py", ".c"):
-                (measured_c if path.suffix == ".c" else measured_python)(row, path)
+        for path in sorted((ROOT / part).rglob("*.py")):
+            add_module(row, path)
     for part, numbers in complexities(rows).items():
         rows[part]["complexity"] = round(sum(numbers) / len(numbers), 2)
         rows[part]["most"] = max(numbers)

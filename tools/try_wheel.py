@@ -121,7 +121,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="dentscope-wheel-") as name:
         folder = Path(name)
         wheel = build(folder / "dist")
-        environment = make_environment(folder / "environment")
+        environment = folder / "environment"
+        run(UV, "venv", "-q", "-p", sys.executable, environment)
         install(environment, str(wheel))
         work = folder / "work"
         work.mkdir()
@@ -153,12 +154,6 @@ def build(dist: Path) -> Path:
         names = file.namelist()
     say(f"{len(names)} files in the wheel, {sum(n.endswith('.py') for n in names)} of them Python")
     return wheel
-
-
-def make_environment(folder: Path) -> Path:
-    """Make an empty environment of the running Python."""
-    run(UV, "venv", "-q", "-p", sys.executable, folder)
-    return folder
 
 
 def install(environment: Path, what: str) -> None:
