@@ -10,6 +10,7 @@ import os
 import signal
 import time
 import traceback
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from multiprocessing import get_context
@@ -80,5 +81,6 @@ def _diagnose(folder: Path, out: Path, ours: Connection) -> None:
         message = f"exit code {code}" if code else ""
     except BaseException:
         code, message = 1, traceback.format_exc()[-400:]
-    ours.send((code, message, time.process_time()))
+    with suppress(BrokenPipeError):  # the run was stopped
+        ours.send((code, message, time.process_time()))
     ours.close()
