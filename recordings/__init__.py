@@ -14,45 +14,26 @@ if TYPE_CHECKING:
     from .trials import Trials
 
 _FROM = {
-    "ApproachMotion": "recording_set",
-    "Audit": "checks",
-    "CONDITIONS": "columns",
-    "FORMAT": "setup_file",
-    "Finding": "checks",
-    "MEASURED": "columns",
-    "Noise": "noise",
-    "RecordingSet": "recording_set",
-    "SetFile": "setup_file",
-    "Severity": "checks",
-    "Trials": "trials",
-    "audit": "checks",
-    "read": "recording_set",
-    "write": "recording_set",
+    "checks": ("Audit", "Finding", "Severity", "audit"),
+    "columns": ("CONDITIONS", "MEASURED"),
+    "noise": ("Noise",),
+    "recording_set": ("ApproachMotion", "RecordingSet", "read", "write"),
+    "setup_file": ("FORMAT", "SetFile"),
+    "trials": ("Trials",),
 }
 
 __all__ = [
-    "CONDITIONS",
-    "FORMAT",
-    "MEASURED",
-    "ApproachMotion",
-    "Audit",
-    "Finding",
-    "Noise",
-    "RecordingSet",
-    "SetFile",
-    "Severity",
-    "Trials",
-    "audit",
-    "read",
-    "write",
-]
+    "CONDITIONS", "FORMAT", "MEASURED", "ApproachMotion", "Audit", "Finding", "Noise",
+    "RecordingSet", "SetFile", "Severity", "Trials", "audit", "read", "write",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
     """Load a name when it is first asked for: the audit alone takes two seconds of scipy."""
-    if name not in _FROM:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_FROM[name]}", __name__), name)
+    for module, names in _FROM.items():
+        if name in names:
+            return getattr(import_module(f".{module}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

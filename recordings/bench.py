@@ -81,10 +81,7 @@ class Bench(InputTable):
 
 
 def refuse_beyond(added: RecordingSet, rows: tuple[int, ...], problems: Problems) -> None:
-    """Note in `problems` the rows of new trials alone whose speed.
-
-    Angle or load their rig cannot do.
-    """
+    """Note in `problems` the rows of new trials whose speed, angle or load the rig cannot do."""
     bench, trials = added.setup.rig, added.trials
     known = {
         "impact_speed_m_s": (bench.speeds_m_s, added.approach.normal, "m/s"),
@@ -100,6 +97,3 @@ def refuse_beyond(added: RecordingSet, rows: tuple[int, ...], problems: Problems
                     f"{value:.4g} {unit} beyond the rig", row=row, column=column,
                     allowed=f"{low:g} to {high:g}, [rig] of set.toml",
                 )  # fmt: skip
-
-
-__all__ = ["Bench", "Minutes", "refuse_beyond"]

@@ -89,8 +89,6 @@ CONDITIONS: dict[str, Column] = {
 }
 """Columns that describe a trial, in the order in which they are written."""
 
-"""Largest number that a column may hold, by its end; more is mostly another unit."""
-
 
 def _highest(name: str) -> float:
     return next((high for end, high in _HIGHEST.items() if name.endswith(end)), _HIGHEST_RATIO)

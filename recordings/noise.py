@@ -11,9 +11,6 @@ from ..core.arrays import Array, Indices
 from ..core.observables import RELATIVE_SUFFIX
 from .rules import RULES
 
-MIN_REPEATS = RULES.repeats
-"""Trials at one condition from which a noise may be taken."""
-
 
 @dataclass(frozen=True, slots=True)
 class Noise:
@@ -71,7 +68,7 @@ def _scatter(values: Array, groups: Indices) -> tuple[Array, float]:
     order = known[np.argsort(groups[known], kind="stable")]
     starts = np.flatnonzero(np.diff(groups[order])) + 1
     for inside in np.split(values[order], starts):
-        if inside.size >= MIN_REPEATS:
+        if inside.size >= RULES.repeats:
             mean = inside.mean()
             squares += float(np.sum(((inside - mean) / (mean if positive else 1.0)) ** 2))
             degrees += inside.size - 1

@@ -420,7 +420,7 @@ def _without_noise(found: RecordingSet) -> list[InputError]:
     source = str((found.folder or Path()) / "set.toml")
     return [
         InputError(
-            f"{name} has no standard deviation, and fewer than {noise.MIN_REPEATS} repeats that "
+            f"{name} has no standard deviation, and fewer than {RULES.repeats} repeats that "
             "differ",
             source=source, key=f"noise.{name}",
             allowed=f"{name} or {name}{RELATIVE_SUFFIX} in [noise], or a column {name}_std",

@@ -74,8 +74,7 @@ class RecordingRules:
         0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]"
     )
     beyond: float = rule(
-        4.0,
-        "standard deviations that are a mistake [-]",
+        4.0, "standard deviations that are a mistake [-]",
         "one in 15 000",
     )  # fmt: skip
     trace_samples: int = rule(5, "samples of a contact from which an impulse is taken [-]")

@@ -118,13 +118,12 @@ def _plain(table: BaseModel) -> dict[str, Any]:
     }  # fmt: skip
     plain = {k: v for k, v in given.items() if not _is_table(v)}
     for name, value in given.items():
-        if _is_table(value):
-            pairs = value.items() if isinstance(value, dict) else ()
-            plain[name] = (
-                {k: _plain(v) if isinstance(v, BaseModel) else v for k, v in pairs}
-                if isinstance(value, dict)
-                else _plain(value)
-            )
+        if isinstance(value, dict):
+            plain[name] = {
+                k: _plain(v) if isinstance(v, BaseModel) else v for k, v in value.items()
+            }
+        elif _is_table(value):
+            plain[name] = _plain(value)
     return plain
 
 

@@ -3,39 +3,38 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from functools import lru_cache
 
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits
-from .findings import Finding, Severity, gathered
-from .trial_view import TrialReading, TrialView, combined, value_of, views
+from .findings import Finding, Severity
+from .trial_view import TrialReading, TrialView, by_trial, value_of
 
 
-def check_energy(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_energy(view: TrialView) -> Iterator[Finding]:
     """Energy that the contact loses, or is brought, against the work of the measured dent."""
-    findings = []
-    for view in views(found):
-        e, depth, pressure = view.measured("restitution"), _depth(view), _pressure(view)
-        brought, lost = _energies(view, e)
-        if e is not None and lost.value < -RULES.beyond * lost.std and view.touch.c == 0.0:
-            text = f"restitution {e.value:.3g} is a gain of {-lost.value:.3g} J"
-            z = -lost.value / lost.std
-            findings.append(
-                Finding(f"energy of {view.name}", Severity.CONTRADICTION, text, e.value, 1.0, z)
-            )
-        elif depth is not None and pressure is not None:
-            work = limits.dent_work(view.R, depth.value, pressure.value)
-            relative = combined(
-                2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
-            )
-            cost = TrialReading(work, relative * work)
-            if e is None:
-                findings.append(_supply(view.name, cost, brought))
-            else:
-                findings.append(_budget(view.name, cost, lost))
-        elif pressure is not None:
-            findings += [_supply(view.name, cost, brought) for cost in _of_circle(view, pressure)]
-    return gathered(findings)
+    e, depth, pressure = view.measured("restitution"), _depth(view), _pressure(view)
+    brought, lost = _energies(view, e)
+    if e is not None and lost.value < -RULES.beyond * lost.std and view.touch.c == 0.0:
+        text = f"restitution {e.value:.3g} is a gain of {-lost.value:.3g} J"
+        z = -lost.value / lost.std
+        yield Finding(f"energy of {view.name}", Severity.CONTRADICTION, text, e.value, 1.0, z)
+    elif depth is not None and pressure is not None:
+        cost = _work(view, depth.value, 2.0 * depth.relative, pressure)
+        yield _supply(view.name, cost, brought) if e is None else _budget(view.name, cost, lost)
+    elif pressure is not None:
+        for cost in _of_circle(view, pressure):
+            yield _supply(view.name, cost, brought)
+
+
+def _work(view: TrialView, depth: float, relative: float, pressure: TrialReading) -> TrialReading:
+    """Work of pressing a crater of this depth [J]; `relative` is its error by the depth."""
+    work = limits.dent_work(view.R, depth, pressure.value)
+    own = math.hypot(relative, view.striker.tip_radius_m.relative, pressure.relative)
+    return TrialReading(work, own * work)
 
 
 def _depth(view: TrialView) -> TrialReading | None:
@@ -52,9 +51,7 @@ def _of_circle(view: TrialView, pressure: TrialReading) -> list[TrialReading]:
     leans = touch.c > 1e-3 * touch.s or abs(touch.tip[0]) > 1e-3 * abs(touch.tip[1])
     if wide is None or not wide.value > 0.0 or leans:
         return []
-    work = limits.dent_work(view.R, 0.125 * wide.value**2 / view.R, pressure.value)
-    relative = combined(4.0 * wide.relative, view.striker.tip_radius_m.relative, pressure.relative)
-    return [TrialReading(work, relative * work)]
+    return [_work(view, 0.125 * wide.value**2 / view.R, 4.0 * wide.relative, pressure)]
 
 
 def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, TrialReading]:
@@ -64,14 +61,14 @@ def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, Tr
     v = abs(touch.tip[1])
     brought = 0.5 * touch.impulse(0.0, value_of(mu, 0.0))[1] * v
     relative = max(
-        combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
+        math.hypot(2.0 * view.speed.relative, view.striker.mass_kg.relative), RULES.rounding
     )
     whole = TrialReading(brought, relative * brought)
     if e is None:
         return whole, whole
     lost = (1.0 - e.value**2) * brought
-    std = combined(2.0 * e.value * e.std * brought, relative * lost)
-    return whole, TrialReading(lost, max(std, limits.ROUNDING * brought))
+    std = math.hypot(2.0 * e.value * e.std * brought, relative * lost)
+    return whole, TrialReading(lost, max(std, RULES.rounding * brought))
 
 
 def _supply(name: str, work: TrialReading, brought: TrialReading) -> Finding:
@@ -106,99 +103,76 @@ def _budget(name: str, work: TrialReading, lost: TrialReading) -> Finding:
     return Finding(title, Severity.CONSISTENT, text, work.value, lost.value, z)
 
 
-def check_force(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_force(view: TrialView) -> Iterator[Finding]:
     """Peak force, measured or needed by the dent, against yield and waves of the rod."""
-    findings = []
-    for view in views(found):
-        striker = view.striker
-        force, word = _force(view)
-        if striker.shape != "rod" or force is None:
+    striker = view.striker
+    force, word = _force(view)
+    if striker.shape != "rod" or force is None:
+        return
+    bounds = {"wave limit rho c v A": limits.wave_limit(striker, view.speed.value)}
+    if striker.Sy_Pa is not None:
+        bounds["yield force of the rod"] = striker.Sy_Pa.value * limits.rod_area(striker)
+    wrong = Severity.CONTRADICTION if word == "measured" else Severity.CAUTION
+    for what, bound in bounds.items():
+        if math.isnan(bound):
             continue
-        bounds = {"wave limit rho c v A": limits.wave_limit(striker, view.speed.value)}
-        if striker.Sy_Pa is not None:
-            bounds["yield force of the rod"] = striker.Sy_Pa.value * limits.rod_area(striker)
-        wrong = Severity.CONTRADICTION if word == "measured" else Severity.CAUTION
-        for what, bound in bounds.items():
-            if math.isnan(bound):
-                continue
-            z = (force.value - bound) / math.hypot(force.std, RULES.bound_std * bound)
-            findings.append(
-                Finding(
-                    f"force of {view.name} against {what}",
-                    wrong if z > RULES.beyond else Severity.CONSISTENT,
-                    f"{force.value:.4g} N {word}, {bound:.4g} N ({force.value / bound:.2g} times)",
-                    force.value,
-                    bound,
-                    max(z, 0.0),
-                )
-            )
-    return gathered(findings)
+        z = (force.value - bound) / math.hypot(force.std, RULES.bound_std * bound)
+        yield Finding(
+            f"force of {view.name} against {what}",
+            wrong if z > RULES.beyond else Severity.CONSISTENT,
+            f"{force.value:.4g} N {word}, {bound:.4g} N ({force.value / bound:.2g} times)",
+            force.value, bound, max(z, 0.0),
+        )  # fmt: skip
 
 
-def check_contact_size(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_contact_size(view: TrialView) -> Iterator[Finding]:
     """Radius of the dent against the radius of the rod."""
-    findings = []
-    for view in views(found):
-        depth, striker = view.measured("permanent_depth_m"), view.striker
-        if striker.shape != "rod" or depth is None:
-            continue
-        a, r = limits.open_dent_radius(view.R, depth.value), striker.body_radius
-        severity, tail = Severity.CONSISTENT, ""
-        if a > r:
-            severity, tail = Severity.CAUTION, ": the contact reaches the edge"
-        findings.append(
-            Finding(
-                f"contact size of {view.name}",
-                severity,
-                f"a dent {depth.value * 1e6:.3g} um deep is {a * 1e3:.3g} mm in radius, the rod "
-                f"{r * 1e3:.3g} mm{tail}",
-                a,
-                r,
-            )
-        )
-    return gathered(findings)
+    depth, striker = view.measured("permanent_depth_m"), view.striker
+    if striker.shape != "rod" or depth is None:
+        return
+    a, r = limits.open_dent_radius(view.R, depth.value), striker.body_radius
+    severity, tail = Severity.CONSISTENT, ""
+    if a > r:
+        severity, tail = Severity.CAUTION, ": the contact reaches the edge"
+    text = (
+        f"a dent {depth.value * 1e6:.3g} um deep is {a * 1e3:.3g} mm in radius, the rod "
+        f"{r * 1e3:.3g} mm{tail}"
+    )
+    yield Finding(f"contact size of {view.name}", severity, text, a, r)
 
 
-def check_duration(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_duration(view: TrialView) -> Iterator[Finding]:
     """Contact time against wave round trip and bending period of the rod."""
-    findings = []
-    for view in views(found):
-        striker = view.striker
-        time, word = _duration(view)
-        if striker.shape != "rod" or striker.E_Pa is None or time is None:
-            continue
-        periods = {"wave round trip 2L/c": 2.0 * striker.length / limits.bar_wave_speed(striker)}
-        if view.touch.c > 1e-3 * view.touch.s:
-            periods["first bending period"] = limits.bending_period(striker)
-        for what, period in periods.items():
-            severity, tail = Severity.CONSISTENT, ""
-            if time < RULES.rigid_periods * period:
-                severity, tail = Severity.CAUTION, ": the rod may not act as rigid"
-            findings.append(
-                Finding(
-                    f"duration of {view.name} against {what}",
-                    severity,
-                    f"{time * 1e3:.3g} ms {word}, {period * 1e3:.3g} ms "
-                    f"({time / period:.2g} times){tail}",
-                    time,
-                    period,
-                )
-            )
-    return gathered(findings)
+    striker = view.striker
+    time, word = _duration(view)
+    if striker.shape != "rod" or striker.E_Pa is None or time is None:
+        return
+    periods = {"wave round trip 2L/c": 2.0 * striker.length / limits.bar_wave_speed(striker)}
+    if view.touch.c > 1e-3 * view.touch.s:
+        periods["first bending period"] = limits.bending_period(striker)
+    for what, period in periods.items():
+        severity, tail = Severity.CONSISTENT, ""
+        if time < RULES.rigid_periods * period:
+            severity, tail = Severity.CAUTION, ": the rod may not act as rigid"
+        text = (
+            f"{time * 1e3:.3g} ms {word}, {period * 1e3:.3g} ms ({time / period:.2g} times){tail}"
+        )
+        yield Finding(f"duration of {view.name} against {what}", severity, text, time, period)
 
 
 def _pressure(view: TrialView) -> TrialReading | None:
-    if not view.found.setup.target.yields:
-        return None
-    return view.of_striker("pressure", lambda: _hardness(view))
+    return None if view.parted else _hardness(view.found, view.found.trials.striker[view.i])
 
 
-def _hardness(view: TrialView) -> TrialReading | None:
-    # of two spheres alike each keeps a part of the dent
-    if view.second is not None and not limits.clearly_softer(view.found.setup.target, view.striker):
-        return None
-    found = limits.hardness(view.found.setup.target, view.striker)
-    return None if found is None else TrialReading(found.value, found.std)
+@lru_cache(maxsize=16)
+def _hardness(found: RecordingSet, striker: str) -> TrialReading | None:
+    """What is the same for all trials of a striker."""
+    target = found.setup.target
+    hard = limits.hardness(target, found.setup.strikers[striker]) if target.yields else None
+    return None if hard is None else TrialReading(hard.value, hard.std)
 
 
 def _force(view: TrialView) -> tuple[TrialReading | None, str]:
@@ -209,7 +183,7 @@ def _force(view: TrialView) -> tuple[TrialReading | None, str]:
     if depth is None or pressure is None:
         return None, ""
     value = pressure.value * math.pi * limits.dent_radius(view.striker, depth.value) ** 2
-    relative = combined(depth.relative, pressure.relative)
+    relative = math.hypot(depth.relative, pressure.relative)
     return TrialReading(value, relative * value), "needed by the dent"
 
 

@@ -10,13 +10,6 @@ from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
 from ...core.unstated import unstated_equal
-from ..rules import RULES
-
-FALSE_ALARMS_MASS = RULES.false_alarms_mass
-"""Part of clean sets in which a mass may be called wrong, over all strikers together."""
-
-FALSE_ALARMS_OTHER = RULES.false_alarms
-"""The same for all other statistical checks of a set together."""
 
 
 class Severity(Enum):

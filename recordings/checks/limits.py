@@ -11,10 +11,6 @@ from ..rules import RULES
 FULLY_PLASTIC = 2.84
 """Contact pressure of a fully developed dent over the yield strength (Tabor; thesis 1.2)."""
 
-
-ROUNDING = RULES.rounding
-"""Relative standard deviation when mass, density and size are all stated as exact."""
-
 FIRST_BENDING = 4.730041
 """First root of cos(x) cosh(x) = 1: free-free bending."""
 
@@ -85,11 +81,8 @@ def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
         return None
     if target.strength and striker.strength and striker.strength.value < target.strength.value:
         return None
-    return (
-        found
-        if found.std
-        else Quantity(value=found.value, std=RULES.unstated_strength * found.value)
-    )
+    std = found.std or RULES.unstated_strength * found.value
+    return Quantity(value=found.value, std=std)
 
 
 def clearly_softer(target: TargetTable, striker: StrikerTable) -> bool:

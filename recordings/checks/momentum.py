@@ -17,7 +17,7 @@ from ...core.inputs.second_sphere import StruckSphere, struck_sphere
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
-from .findings import FALSE_ALARMS_OTHER, Finding, judged, two_sided
+from .findings import Finding, judged, two_sided
 from .rigid import FIXED_BY_MOMENTUM, RigidTouch, measured_after, touch
 from .trial_view import angle_std, speed_std
 
@@ -27,11 +27,8 @@ _MOMENTUM_SETTLED = 1e-10
 # limit: most steps of the least squares [-]
 _MOMENTUM_STEPS = 60
 
-SHARE = FALSE_ALARMS_OTHER / 2.0
+SHARE = RULES.false_alarms / 2.0
 """This check's part of the false alarms."""
-
-MODEL_TOLERANCE = RULES.frozen_angle
-"""Part of the approach speed by which a frozen angle and a fixed contact point may err."""
 
 _NORMAL = ("restitution", "rebound_speed_m_s")
 
@@ -100,11 +97,9 @@ def check_momentum(found: RecordingSet) -> list[Finding]:
             judged(p, SHARE),
             f"one impulse a trial leaves chi squared {total:.1f} on {tests} degrees of freedom"
             + (f", most in {found.trials.trial[worst]}" if each[worst] > 0.0 else ""),
-            total,
-            float(tests),
-            two_sided(p),
+            total, float(tests), two_sided(p),
         )
-    ]
+    ]  # fmt: skip
 
 
 def _trials(found: RecordingSet, striker: str, rows: Indices) -> MomentumTrials:
@@ -128,8 +123,8 @@ def momentum_misfit(trials: MomentumTrials) -> tuple[Array, Array]:
     """Return chi squared and degrees of freedom of the one impulse that fits each trial best.
 
     Both are of shape (n,). Every observable beyond two is a test. Unknown are the two components of
-    the impulse, and speed and angle within their standard deviations; a part `MODEL_TOLERANCE` of
-    the approach speed is added to what was measured.
+    the impulse, and speed and angle within their standard deviations; a part `RULES.frozen_angle`
+    of the approach speed is added to what was measured.
     """
     misfit = np.zeros(len(trials.speed))
     known = {name: np.isfinite(both[:, 0]) for name, both in trials.measured.items()}
@@ -168,7 +163,7 @@ def _best(trials: MomentumTrials) -> Array:
         after = measured_after(some.before(x[:, 2], x[:, 3]), (px, py))
         left = [x[:, 2], x[:, 3]]
         for name, (value, std) in ((n, both.T) for n, both in some.measured.items()):
-            sigma = np.hypot(std, MODEL_TOLERANCE * unit[name][rows])
+            sigma = np.hypot(std, RULES.frozen_angle * unit[name][rows])
             left.append(np.nan_to_num((after[name] - value) / sigma))
         return np.stack(left, axis=1)
 

@@ -13,17 +13,8 @@ from ...core.rig import Quantity, StrikerTable, TargetTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits, momentum
-from .findings import (
-    FALSE_ALARMS_MASS,
-    FALSE_ALARMS_OTHER,
-    Finding,
-    Severity,
-    critical_interval,
-    gathered,
-    judged,
-    two_sided,
-)
-from .trial_view import combined, speed_std, value_of, views
+from .findings import Finding, Severity, critical_interval, judged, two_sided
+from .trial_view import TrialView, by_trial, speed_std, value_of
 
 
 def check_mass(found: RecordingSet) -> list[Finding]:
@@ -35,21 +26,22 @@ def check_mass(found: RecordingSet) -> list[Finding]:
     strikers = found.setup.strikers
     allowed = {name: limits.geometric_mass(striker) for name, striker in strikers.items()}
     known = {name: mass for name, mass in allowed.items() if mass is not None}
-    part = _part_of_the_ends([(strikers[name], mass) for name, mass in known.items()])
+    bodies = [(strikers[name], mass) for name, mass in known.items()]
+    part = _part_of_the_ends(bodies)
     findings = [
         Finding(f"mass of {name}", Severity.UNCHECKED, "no density is stated")
         for name in strikers
         if name not in known
     ]
     rods = sum(mass.high > mass.low for mass in known.values())
-    alone = FALSE_ALARMS_MASS if len(known) < 2 else RULES.alone * FALSE_ALARMS_MASS
+    alone = RULES.false_alarms_mass if len(known) < 2 else RULES.alone * RULES.false_alarms_mass
     for name, mass in known.items():
         stated = strikers[name].mass_kg
         width = (mass.high / mass.low - 1.0) / _mass_relative(stated, mass) if rods == 1 else 0.0
         critical = critical_interval(width, alone / len(known))
         findings.append(_weighed(name, stated, mass, _expected(mass, part), critical))
     if len(known) > 1:
-        findings.append(_masses_together([(strikers[name], mass) for name, mass in known.items()]))
+        findings.append(_masses_together(bodies))
     return [*findings, *_second_mass(found.setup.target)]
 
 
@@ -61,7 +53,7 @@ def _second_mass(target: TargetTable) -> Iterator[Finding]:
     if mass is None:
         yield Finding(f"mass of {name}", Severity.UNCHECKED, "no density is stated")
     else:
-        critical = critical_interval(0.0, FALSE_ALARMS_MASS)
+        critical = critical_interval(0.0, RULES.false_alarms_mass)
         yield _weighed(name, target.mass_kg, mass, mass.low, critical)
 
 
@@ -86,7 +78,7 @@ def _masses_together(bodies: list[tuple[StrikerTable, limits.Range]]) -> Finding
     factor = _factor(bodies, part)
     plain = _misfit(bodies, _part_of_the_ends(bodies))
     gain = max(plain - _misfit(bodies, part, factor), 0.0)
-    wrong = float(chdtrc(1, gain)) < (1.0 - RULES.alone) * FALSE_ALARMS_MASS
+    wrong = float(chdtrc(1, gain)) < (1.0 - RULES.alone) * RULES.false_alarms_mass
     return Finding(
         "mass of all strikers together",
         Severity.CONTRADICTION if wrong else Severity.CONSISTENT,
@@ -118,7 +110,7 @@ def _factor(bodies: list[tuple[StrikerTable, limits.Range]], part: float) -> flo
 
 
 def _mass_relative(stated: Quantity, mass: limits.Range) -> float:
-    return combined(stated.relative, mass.relative) or limits.ROUNDING
+    return math.hypot(stated.relative, mass.relative) or RULES.rounding
 
 
 def _part_of_the_ends(rods: list[tuple[StrikerTable, limits.Range]]) -> float:
@@ -146,72 +138,54 @@ def check_speed(found: RecordingSet) -> list[Finding]:
     share = np.where(rod, 1.0, np.sin(np.radians(trials.angle_deg[both])))
     fall = np.sqrt(2.0 * g * trials.drop_height_m[both]) * share
     std = speed_std(found)[both]
-    z = (speed - fall) / np.where(std > 0.0, std, limits.ROUNDING * speed)
+    z = (speed - fall) / np.where(std > 0.0, std, RULES.rounding * speed)
     p = float(chdtrc(z.size, np.sum(z**2)))
     worst = int(np.argmax(np.abs(z)))
     mean = float(np.mean(speed / fall))
     return [
         Finding(
             "speed against height of fall",
-            judged(p, FALSE_ALARMS_OTHER - momentum.SHARE),
+            judged(p, RULES.false_alarms - momentum.SHARE),
             f"on average {mean - 1.0:+.1%} of sqrt(2 g H), at most {speed[worst]:.4g} against "
             f"{fall[worst]:.4g} m/s, {z.size} trials",
-            mean,
-            1.0,
-            two_sided(p),
+            mean, 1.0, two_sided(p),
         )
-    ]
+    ]  # fmt: skip
 
 
-def check_friction(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_friction(view: TrialView) -> Iterator[Finding]:
     """Impulse ratio against the ratio at which a rigid tip would stick."""
-    findings = []
-    for view in views(found):
-        ratio, touch = view.measured("friction_impulse_ratio"), view.touch
-        if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
-            continue
-        leaning = max(view.angle.value - RULES.angles_apart * view.angle.std, 0.0)
-        limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
-        z = (ratio.value - limit) / ratio.std
-        stuck = z > RULES.beyond
-        findings.append(
-            Finding(
-                f"friction of {view.name}",
-                Severity.CAUTION if stuck else Severity.CONSISTENT,
-                f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {limit:.3g}",
-                ratio.value,
-                limit,
-                max(z, 0.0),
-            )
-        )
-    return gathered(findings)
+    ratio, touch = view.measured("friction_impulse_ratio"), view.touch
+    if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
+        return
+    leaning = max(view.angle.value - RULES.angles_apart * view.angle.std, 0.0)
+    limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
+    z = (ratio.value - limit) / ratio.std
+    severity = Severity.CAUTION if z > RULES.beyond else Severity.CONSISTENT
+    text = f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {limit:.3g}"
+    yield Finding(f"friction of {view.name}", severity, text, ratio.value, limit, max(z, 0.0))
 
 
-def check_impulse(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_impulse(view: TrialView) -> Iterator[Finding]:
     """Impulse that reverses the motion against peak force times duration."""
-    findings = []
-    for view in views(found):
-        e, mu = view.measured("restitution"), view.measured("friction_impulse_ratio")
-        force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
-        if e is None or force is None or time is None:
-            continue
-        impulse = view.touch.impulse(e.value, value_of(mu, 0.0))[1]
-        pulse = force.value * time.value
-        ratio = impulse / pulse
-        relative = combined(
-            force.relative, time.relative, view.speed.relative, view.striker.mass_kg.relative
-        )
-        z = (ratio - RULES.pulse[1]) / (max(relative, limits.ROUNDING) * ratio)
-        severity = Severity.CONSISTENT if ratio > RULES.pulse[0] else Severity.CAUTION
-        findings.append(
-            Finding(
-                f"impulse of {view.name}",
-                Severity.CONTRADICTION if z > RULES.beyond else severity,
-                f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
-                f"(ratio {ratio:.2g}, usually {RULES.pulse[0]:g} to {RULES.pulse[1]:g})",
-                impulse,
-                pulse,
-                max(z, 0.0) if severity is Severity.CONSISTENT else math.nan,
-            )
-        )
-    return gathered(findings)
+    e, mu = view.measured("restitution"), view.measured("friction_impulse_ratio")
+    force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
+    if e is None or force is None or time is None:
+        return
+    impulse = view.touch.impulse(e.value, value_of(mu, 0.0))[1]
+    pulse = force.value * time.value
+    ratio = impulse / pulse
+    relative = math.hypot(
+        force.relative, time.relative, view.speed.relative, view.striker.mass_kg.relative
+    )
+    z = (ratio - RULES.pulse[1]) / (max(relative, RULES.rounding) * ratio)
+    severity = Severity.CONSISTENT if ratio > RULES.pulse[0] else Severity.CAUTION
+    yield Finding(
+        f"impulse of {view.name}",
+        Severity.CONTRADICTION if z > RULES.beyond else severity,
+        f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
+        f"(ratio {ratio:.2g}, usually {RULES.pulse[0]:g} to {RULES.pulse[1]:g})",
+        impulse, pulse, max(z, 0.0) if severity is Severity.CONSISTENT else math.nan,
+    )  # fmt: skip

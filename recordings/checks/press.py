@@ -3,98 +3,84 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from ...core.rig import BodyTable
-from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits
-from .findings import Finding, Severity, gathered
-from .trial_view import TrialReading, TrialView, combined, views
+from .findings import Finding, Severity
+from .trial_view import TrialReading, TrialView, by_trial
 
 LOAD_CLASS = 0.005
 """Relative standard deviation of a load stated without one [-]: class 1 of ISO 7500-1, 1 %."""
 
 
-def check_press_load(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_press_load(view: TrialView) -> Iterator[Finding]:
     """Mean pressure, load over the dent's area, against the strength of the flat."""
-    findings = []
-    target = found.setup.target
-    for view in views(found):
-        pressure = limits.hardness(target, view.striker) if target.yields else None
-        area = _dent_area(view)
-        if pressure is None or area is None:
-            continue
-        low, high = RULES.mean_pressure
-        # Sy_Pa alone says little of how a metal hardens
-        high *= 1.0 if target.hardness_Pa is not None else RULES.hardened
-        load = _load(view)
-        p = load.value / area.value
-        std = p * combined(load.relative, area.relative, pressure.relative)
-        z = max(low * pressure.value - p, p - high * pressure.value, 0.0) / max(std, 1e-12)
-        findings.append(
-            Finding(
-                f"load of {view.name} against the strength",
-                Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
-                f"{load.value:.4g} N on the dent is a mean pressure of {p / 1e6:.4g} MPa, "
-                f"{p / pressure.value:.2g} times the flat's {pressure.value / 1e6:.4g} MPa",
-                p, pressure.value, z,
-            )
-        )  # fmt: skip
-    return gathered(findings)
+    target = view.found.setup.target
+    pressure = limits.hardness(target, view.striker) if target.yields else None
+    area = _dent_area(view)
+    if pressure is None or area is None:
+        return
+    low, high = RULES.mean_pressure
+    # Sy_Pa alone says little of how a metal hardens
+    high *= 1.0 if target.hardness_Pa is not None else RULES.hardened
+    load = _load(view)
+    p = load.value / area.value
+    std = p * math.hypot(load.relative, area.relative, pressure.relative)
+    z = max(low * pressure.value - p, p - high * pressure.value, 0.0) / max(std, 1e-12)
+    yield Finding(
+        f"load of {view.name} against the strength",
+        Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
+        f"{load.value:.4g} N on the dent is a mean pressure of {p / 1e6:.4g} MPa, "
+        f"{p / pressure.value:.2g} times the flat's {pressure.value / 1e6:.4g} MPa",
+        p, pressure.value, z,
+    )  # fmt: skip
 
 
-def check_press_recovery(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_press_recovery(view: TrialView) -> Iterator[Finding]:
     """What springs back against Hertz's and a punch's recovery at the same load and radius."""
-    findings = []
-    for view in views(found):
-        back, modulus = view.measured("recovered_depth_m"), _reduced(view)
-        radius = _radius(view)
-        if back is None or math.isnan(modulus) or radius is None:
-            continue
-        load = _load(view)
-        scale = load.value / (modulus * radius.value)
-        std = math.hypot(back.std, scale * combined(load.relative, radius.relative, 0.05))
-        low, high = (share * scale for share in RULES.recovery)
-        z = max(low - back.value, back.value - high, 0.0) / std
-        tail = ""
-        if back.value > high and z > RULES.beyond:
-            tail = ": is the machine's own compliance taken off?"
-        findings.append(
-            Finding(
-                f"recovery of {view.name} against elasticity",
-                Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
-                f"{back.value * 1e6:.4g} um spring back, elastic bodies give {low * 1e6:.4g} to "
-                f"{high * 1e6:.4g} um{tail}",
-                back.value, 0.5 * (low + high), z,
-            )
-        )  # fmt: skip
-    return gathered(findings)
+    back, modulus, radius = view.measured("recovered_depth_m"), _reduced(view), _radius(view)
+    if back is None or math.isnan(modulus) or radius is None:
+        return
+    load = _load(view)
+    scale = load.value / (modulus * radius.value)
+    std = math.hypot(back.std, scale * math.hypot(load.relative, radius.relative, 0.05))
+    low, high = (share * scale for share in RULES.recovery)
+    z = max(low - back.value, back.value - high, 0.0) / std
+    tail = ""
+    if back.value > high and z > RULES.beyond:
+        tail = ": is the machine's own compliance taken off?"
+    yield Finding(
+        f"recovery of {view.name} against elasticity",
+        Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
+        f"{back.value * 1e6:.4g} um spring back, elastic bodies give {low * 1e6:.4g} to "
+        f"{high * 1e6:.4g} um{tail}",
+        back.value, 0.5 * (low + high), z,
+    )  # fmt: skip
 
 
-def check_press_depths(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_press_depths(view: TrialView) -> Iterator[Finding]:
     """Depth under load against what stays and what springs back."""
-    findings = []
-    target = found.setup.target
-    for view in views(found):
-        deepest, back = view.measured("press_depth_m"), view.measured("recovered_depth_m")
-        left = view.measured("permanent_depth_m")
-        weak = limits.clearly_softer(target, view.striker)
-        # a ball that is dented as well keeps a part of the approach
-        if deepest is None or back is None or left is None or not weak:
-            continue
-        z = (left.value + back.value - deepest.value) / math.hypot(left.std, back.std, deepest.std)
-        findings.append(
-            Finding(
-                f"depths of {view.name}",
-                Severity.CONTRADICTION if abs(z) > RULES.beyond else Severity.CONSISTENT,
-                f"{left.value * 1e6:.4g} um stay and {back.value * 1e6:.4g} um spring back of "
-                f"{deepest.value * 1e6:.4g} um under load",
-                left.value + back.value, deepest.value, abs(z),
-            )
-        )  # fmt: skip
-    return gathered(findings)
+    deepest, back = view.measured("press_depth_m"), view.measured("recovered_depth_m")
+    left = view.measured("permanent_depth_m")
+    weak = limits.clearly_softer(view.found.setup.target, view.striker)
+    # a ball that is dented as well keeps a part of the approach
+    if deepest is None or back is None or left is None or not weak:
+        return
+    z = (left.value + back.value - deepest.value) / math.hypot(left.std, back.std, deepest.std)
+    yield Finding(
+        f"depths of {view.name}",
+        Severity.CONTRADICTION if abs(z) > RULES.beyond else Severity.CONSISTENT,
+        f"{left.value * 1e6:.4g} um stay and {back.value * 1e6:.4g} um spring back of "
+        f"{deepest.value * 1e6:.4g} um under load",
+        left.value + back.value, deepest.value, abs(z),
+    )  # fmt: skip
 
 
 def _load(view: TrialView) -> TrialReading:
@@ -109,14 +95,11 @@ def _dent_area(view: TrialView) -> TrialReading | None:
         area = 0.25 * math.pi * diameter.value**2
         return TrialReading(area, 2.0 * diameter.relative * area)
     depth = view.measured("permanent_depth_m")
-    parted = view.second is not None and not limits.clearly_softer(
-        view.found.setup.target, view.striker
-    )
-    if depth is None or depth.value <= 0.0 or parted:
+    if depth is None or depth.value <= 0.0 or view.parted:
         return None
     area = math.pi * limits.open_dent_radius(view.R, depth.value) ** 2
     # pile-up and recovery
-    return TrialReading(area, combined(depth.relative, 0.2) * area)
+    return TrialReading(area, math.hypot(depth.relative, 0.2) * area)
 
 
 def _radius(view: TrialView) -> TrialReading | None:

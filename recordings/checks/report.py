@@ -7,7 +7,6 @@ sets; a caution says that an assumption of the rigid baseline is not safe.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..recording_set import RecordingSet
@@ -17,8 +16,7 @@ from .momentum import check_momentum
 from .motion import check_friction, check_impulse, check_mass, check_speed
 from .press import check_press_depths, check_press_load, check_press_recovery
 from .trace import check_trace
-
-Check = Callable[[RecordingSet], list[Finding]]
+from .trial_view import Check
 
 CHECKS: tuple[Check, ...] = (
     check_speed,

@@ -3,37 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from ...core.arrays import Array
-from ..recording_set import RecordingSet
 from ..rules import RULES
-from . import limits
-from .findings import Finding, Severity, gathered
-from .trial_view import TrialView, combined, value_of, views
+from .findings import Finding, Severity
+from .trial_view import TrialView, by_trial, value_of
 
 _ELASTIC, _PLASTIC = 1.0, 0.0
 
 
-def check_trace(found: RecordingSet) -> list[Finding]:
+@by_trial
+def check_trace(view: TrialView) -> Iterator[Finding]:
     """Impulse of a force trace against the momentum that the impact changed.
 
     With a measured restitution the two must agree; without one the impulse must lie between that
     of a body that stays and of one that rebounds without loss.
     """
-    findings = []
-    for view in views(found):
-        if view.name not in found.traces:
-            continue
-        trace = found.trace(view.name)
+    if view.name in view.found.traces:
+        trace = view.found.trace(view.name)
         if "force_N" in trace:
-            findings.append(_compared(found, view, trace))
-    return gathered(findings)
+            yield _compared(view, trace)
 
 
-def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) -> Finding:
+def _compared(view: TrialView, trace: Mapping[str, Array]) -> Finding:
     name = f"impulse of {view.name} against its force trace"
     known = np.isfinite(trace["force_N"])
     time, force = trace["time_s"][known], trace["force_N"][known]
@@ -47,15 +42,15 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
     traced = float(np.trapezoid(force, time))
     e, mu = view.measured("restitution"), view.measured("friction_impulse_ratio")
     # While the contact lasts gravity adds g T to the velocity that the impulse has to turn.
-    drop = found.setup.gravity_m_s2.value * _duration(time, force) / view.speed.value
+    drop = view.found.setup.gravity_m_s2.value * _duration(time, force) / view.speed.value
 
     def moved(restitution: float) -> float:
         return float(view.touch.impulse(restitution + drop, value_of(mu, 0.0))[1])
 
-    noise = found.setup.noise
+    noise = view.found.setup.noise
     ragged = noise.get("force_N", 0.0) * lasts / math.sqrt(time.size)
-    gain = max(noise.get("force_N_relative", 0.0), limits.ROUNDING)
-    relative = combined(
+    gain = max(noise.get("force_N_relative", 0.0), RULES.rounding)
+    relative = math.hypot(
         gain, ragged / traced if traced > 0.0 else 0.0, view.speed.relative,
         view.striker.mass_kg.relative, e.std / (1.0 + e.value) if e else 0.0,
     )  # fmt: skip
@@ -68,10 +63,8 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
         Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
         f"{traced:.4g} N s under the trace, {span} N s from the motion "
         f"({traced / expected - 1.0:+.1%})",
-        traced,
-        expected,
-        z,
-    )
+        traced, expected, z,
+    )  # fmt: skip
 
 
 def _duration(time: Array, force: Array) -> float:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, TypeVar, cast
+from collections.abc import Callable, Iterable
+from functools import cached_property, lru_cache, wraps
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from ...core.inputs.second_sphere import StruckSphere, struck_sphere
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
-from . import rigid
+from . import limits, rigid
+from .findings import Finding, gathered
 
-Found = TypeVar("Found")
+Check = Callable[[RecordingSet], list[Finding]]
 
 
 class TrialReading(NamedTuple):
@@ -37,13 +38,10 @@ def value_of(reading: TrialReading | None, otherwise: float) -> float:
 
 
 class TrialView:
-    """Trial number `i` of a set; what was asked of it once is kept.
+    """Trial number `i` of a set; what was asked of it once is kept."""
 
-    `known` is what was found out for each striker, shared by the trials of the set.
-    """
-
-    def __init__(self, found: RecordingSet, i: int, known: dict[tuple[str, str], Any]) -> None:
-        self.found, self.i, self._known = found, i, known
+    def __init__(self, found: RecordingSet, i: int) -> None:
+        self.found, self.i = found, i
         self._measured: dict[str, TrialReading | None] = {}
 
     @property
@@ -67,12 +65,11 @@ class TrialView:
         own = self.striker.tip_radius_m.value
         return own if self.second is None else self.second.equivalent(own)
 
-    def of_striker(self, what: str, find: Callable[[], Found]) -> Found:
-        """Return what is the same for all trials of this striker."""
-        key = (what, self.found.trials.striker[self.i])
-        if key not in self._known:
-            self._known[key] = find()
-        return cast("Found", self._known[key])
+    @cached_property
+    def parted(self) -> bool:
+        """Whether each of two spheres alike keeps a part of the dent."""
+        target = self.found.setup.target
+        return self.second is not None and not limits.clearly_softer(target, self.striker)
 
     @cached_property
     def speed(self) -> TrialReading:
@@ -139,10 +136,14 @@ def angle_std(found: RecordingSet) -> Array:
 @lru_cache(maxsize=1)
 def views(found: RecordingSet) -> tuple[TrialView, ...]:
     """Every trial of a set in turn; the same ones for all checks of the set."""
-    known: dict[tuple[str, str], Any] = {}
-    return tuple(TrialView(found, i, known) for i in range(len(found.trials)))
+    return tuple(TrialView(found, i) for i in range(len(found.trials)))
 
 
-def combined(*relatives: float) -> float:
-    """Return the root of the sum of squares of relative standard deviations."""
-    return math.hypot(*relatives)
+def by_trial(check: Callable[[TrialView], Iterable[Finding]]) -> Check:
+    """Return a check of one trial as one of a set: the worst finding of each kind."""
+
+    @wraps(check)
+    def of_set(found: RecordingSet) -> list[Finding]:
+        return gathered([finding for view in views(found) for finding in check(view)])
+
+    return of_set

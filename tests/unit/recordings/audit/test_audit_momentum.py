@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from dentscope.core.rig import StrikerTable
 from dentscope.recordings import audit, read
-from dentscope.recordings.checks.momentum import MODEL_TOLERANCE, MomentumTrials, momentum_misfit
+from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
+from dentscope.recordings.rules import RULES
 from scipy.optimize import least_squares
 
 ROD = StrikerTable(
@@ -87,7 +88,7 @@ def test_misfit_is_the_one_that_scipy_finds(body):
             left = [x[2], x[3]]
             for name in known:
                 value, std = measured[name][k]
-                left.append((got[name] - value) / math.hypot(std, MODEL_TOLERANCE * unit[name]))
+                left.append((got[name] - value) / math.hypot(std, RULES.frozen_angle * unit[name]))
             return left
 
         best = min(
