@@ -52,14 +52,16 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
     """Return the corrections of loading and unloading over the depths that a set reaches."""
     problem = simulator.problem
     k = problem.n_nuisances
-    shallowest, deepest = _reached(simulator, base)
+    R = np.array([s.pair.R for s in problem.scenes(base.z)])
+    reached = simulator.observe((), [Point(base.z)])["peak_depth_m"][0] / R
     # the expansion's offset by the law's own coefficients is part of the residual already
     mean, cov = widened(problem, base).unknowns(base.residual)
     mean, cov = mean[k:], cov[k:, k:]
     error = problem.error
     beyond = norm.ppf(0.5 + 0.5 * LEVEL)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
-    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _CORRECTIONS_SHOWN)
+    ends = math.log(0.3 * float(np.min(reached))), math.log(float(np.max(reached)))
+    at = np.linspace(*ends, _CORRECTIONS_SHOWN)
     found = []
     for phase, kind in (("loading", "force"), ("unloading", "recovery")):
         rows = error.rows[kind]
@@ -75,10 +77,3 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
             )
         )  # fmt: skip
     return tuple(found)
-
-
-def _reached(simulator: Simulator, base: Fit) -> tuple[float, float]:
-    """Smallest and largest peak depth over radius of a set."""
-    seen = simulator.observe((), [Point(base.z)])["peak_depth_m"][0]
-    R = np.array([s.pair.R for s in simulator.problem.scenes(base.z)])
-    return float(np.min(seen / R)), float(np.max(seen / R))

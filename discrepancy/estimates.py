@@ -14,6 +14,7 @@ from ..recordings import RecordingSet, Severity, audit
 from .choice.odds import Priors
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
+from .correction import LEVEL
 from .heldout import HeldOut
 from .inference.fit import Fit
 from .inference.grid import interval
@@ -31,15 +32,17 @@ def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
     rows = (*found.of(Severity.CONTRADICTION), *found.of(Severity.CAUTION))
     return tuple(
         {
-            "check": f.check, "value": _finite(f.value), "expected": _finite(f.expected),
+            "check": f.check, "value": finite(float(f.value)),
+            "expected": finite(float(f.expected)),
             "message": f"{f.severity.value}: {f.check}: {f.message}",
         }
         for f in rows
     )  # fmt: skip
 
 
-def _finite(x: float) -> float | None:
-    return float(x) if math.isfinite(x) else None
+def finite(x: float) -> float | None:
+    """Return a number as JSON holds it: null where there is none."""
+    return x if math.isfinite(x) else None
 
 
 def scores_of(
@@ -66,23 +69,20 @@ def scores_of(
 
 
 def parameters_of(
-    simulator: Simulator, fitted: Fit, level: float = 0.90
+    simulator: Simulator, fitted: Fit, level: float = LEVEL
 ) -> dict[str, dict[str, Any]]:
     """Return value and interval of every parameter, the nuisances included.
 
     A mechanism's intervals hold what the textbook's form may be off: its likelihood does.
     """
-    problem = simulator.problem
+    problem, grid = simulator.problem, fitted.grid
     found: dict[str, dict[str, Any]] = {}
-    if fitted.mechanisms:
-        for axis, (label, (_, p)) in enumerate(
-            zip(fitted.grid.labels, fitted.grid.axes, strict=True)
-        ):
-            middle, low, high = interval(*fitted.grid.marginal(fitted.weight, axis), level)
-            found[label] = {
-                "value": float(p.value(middle)), "low": float(p.value(low)),
-                "high": float(p.value(high)), "level": level, "unit": p.unit,
-            }  # fmt: skip
+    for axis, (label, (_, p)) in enumerate(zip(grid.labels, grid.axes, strict=True)):
+        middle, low, high = interval(*grid.marginal(fitted.weight, axis), level)
+        found[label] = {
+            "value": float(p.value(middle)), "low": float(p.value(low)),
+            "high": float(p.value(high)), "level": level, "unit": p.unit,
+        }  # fmt: skip
     spread = norm.ppf(0.5 + 0.5 * level) * np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
     for i, n in enumerate(problem.nuisances):
         z = float(fitted.z[i])
@@ -91,11 +91,6 @@ def parameters_of(
             "level": level, "unit": n.unit,
         }  # fmt: skip
     return found
-
-
-def pulls_of(problem: Problem, fitted: Fit) -> dict[str, float]:
-    """Shift of every stated number in its own stated standard deviations."""
-    return {n.name: float(fitted.z[i]) for i, n in enumerate(problem.nuisances)}
 
 
 def surprises_of(problem: Problem, fitted: Fit) -> dict[str, float]:
@@ -147,10 +142,9 @@ def misfit_of(problem: Problem, base: Fit, stated: Array) -> dict[str, float]:
         found["law"] += part * took
         found["metal"] += (1.0 - part) * took
     rest = 1.0 - sheet - found["law"] - found["metal"]
-    size = float(base.linear.prior[-1]) if base.linear.prior.size else 1.0
     return {
         "as_stated": whole, "numbers": float(len(r)), "sheet": sheet, **found, "rest": rest,
-        "error_size": size,
+        "error_size": float(base.linear.prior[-1]),
     }  # fmt: skip
 
 

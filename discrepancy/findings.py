@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -16,8 +15,8 @@ from ..core.tables import text_table
 from .choice.decide import Choice
 from .comparison.problem import Problem
 from .correction import Correction
-from .experiments.proposal import Proposal
-from .experiments.session import Session
+from .estimates import finite
+from .experiments.session import Proposal, Session
 from .inference.fit import Fit
 from .locate import Located
 from .rank import Ranking
@@ -235,12 +234,11 @@ class Verdict:
 def _proposed(p: Proposal) -> dict[str, Any]:
     return {
         "change": p.change, "expected_discrimination": p.expected_discrimination,
-        "information_nats": p.information, "kind": p.kind,
-        "interval": None if math.isnan(p.interval) else p.interval, "trial": dict(p.trial),
-        "minutes": None if math.isnan(p.minutes) else p.minutes,
+        "information_nats": p.information, "kind": p.kind, "interval": finite(p.interval),
+        "trial": dict(p.trial), "minutes": finite(p.minutes),
     }  # fmt: skip
 
 
 def _stated(found: dict[str, float]) -> dict[str, float | None]:
     """Numbers as JSON holds them: null where no condition could be left out."""
-    return {name: None if math.isnan(value) else value for name, value in found.items()}
+    return {name: finite(value) for name, value in found.items()}

@@ -3,6 +3,14 @@
 Whole groups are left out: all trials of a speed or load, a striker, an angle. Given the other
 cells, the left-out ones follow from the joint Gaussian of the linear algebra, for every value of
 the mechanism's parameters, weighted by how well these explain the cells that were kept.
+
+With Q = Sigma^-1 and g = Q r, the cells t miss what the others foretell by Q_tt^-1 g_t, with the
+covariance Q_tt^-1, so that the others' r^T Sigma^-1 r is r^T g less g_t^T Q_tt^-1 g_t: no group
+needs a factorisation of its own.
+
+References
+----------
+C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (MIT Press 2006), 5.4.2.
 """
 
 from __future__ import annotations
@@ -16,7 +24,6 @@ from scipy.special import logsumexp
 from ..core.arrays import Array, Mask
 from .comparison.problem import Problem
 from .inference.fit import Fit
-from .inference.left_out import Whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +65,17 @@ def groups_of(problem: Problem) -> list[Mask]:
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
     squares, log_density, count = [], 0.0, 0
-    whole = Whole.of(fitted.linear, fitted.residuals)
+    white = fitted.linear.whitening
+    precision = white @ white.T
+    solved = fitted.residuals @ precision
+    whole = np.sum(fitted.residuals * solved, axis=1)
     noise = np.sqrt(np.diag(fitted.linear.noise))
     for test in (t for t in groups_of(problem) if t.any() and not t.all()):
-        miss, told = _missed(whole, test)
-        squares.append((miss / noise[test]) ** 2)
-        log_density += told + float(np.sum(np.log(noise[test])))
+        miss, kept, told = missed(whole, solved[:, test], precision[np.ix_(test, test)])
+        log_weight = -0.5 * kept
+        log_weight -= logsumexp(log_weight)
+        squares.append((np.exp(log_weight) @ miss / noise[test]) ** 2)
+        log_density += float(logsumexp(log_weight + told)) + float(np.sum(np.log(noise[test])))
         count += int(np.sum(problem.cells.count[test]))
     if not squares:
         return HeldOut(math.nan, math.nan, 0)
@@ -71,12 +83,14 @@ def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     return HeldOut(math.sqrt(float(np.mean(every))), log_density / len(every), count)
 
 
-def _missed(whole: Whole, test: Mask) -> tuple[Array, float]:
-    """Data minus prediction of the left-out cells, and their ln density.
+def missed(whole: Array, g: Array, precision: Array) -> tuple[Array, Array, Array]:
+    """Return data minus prediction of the left-out cells t by the others, (k, t).
 
-    Over the parameters, weighted by how well these explain the cells that were kept.
+    And r^T Sigma^-1 r of the others, and the left-out cells' ln density given them, (k,).
+
+    `whole`, `g`, `precision`: r^T Q r (k,), g_t (k, t) and Q_tt (t, t).
     """
-    miss, kept, log_density = whole.missed(test)
-    log_weight = -0.5 * kept
-    log_weight -= logsumexp(log_weight)
-    return np.asarray(np.exp(log_weight) @ miss), float(logsumexp(log_weight + log_density))
+    miss = np.linalg.solve(precision, g.T).T
+    squares = np.sum(g * miss, axis=1)
+    flat = np.linalg.slogdet(precision)[1] - len(precision) * math.log(2.0 * math.pi)
+    return np.asarray(miss), np.asarray(whole - squares), 0.5 * (flat - squares)

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..core.arrays import Array
-from ..dynamics.mechanisms import MECHANISMS, NAMELESS
 from ..dynamics.mechanisms.base import Mechanism
+from .baseline.laws import Progress
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
-from .inference.fit import Fit, baseline_situations, expand, fit, grid_of
+from .inference.fit import Fit, baseline_situations, expand, fit, grid_of, sharpened
 from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
-from .inference.window import sharpened
 from .rules import RULES
 from .unknowns.wrong_number import is_wrong
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,19 +41,6 @@ class Screened:
 
 
 @dataclass(frozen=True, eq=False)
-class Nameless:
-    """Physics that a verdict has no name for: first pass, and its full fit where it is close.
-
-    `screened`, `fit`: first pass; full fit or none; `log_bayes`: ln B against the baseline, of the
-    fit where there is one.
-    """
-
-    screened: Screened
-    fit: Fit | None
-    log_bayes: float
-
-
-@dataclass(frozen=True, eq=False)
 class Ranking:
     """All explanations.
 
@@ -66,7 +50,7 @@ class Ranking:
     - `screened`: first pass, by the mechanisms' own order.
     - `singles`, `pairs`: full fits, best first.
     - `excluded`: mechanism to the reason why arithmetic rules it out.
-    - `nameless`: what a verdict has no name for, and ln B of each against the baseline.
+    - `nameless`: title of what a verdict has no name for to its ln B against the baseline.
     - `unfitted`: pairs without a full fit: ln B against the baseline by the sum of their effects.
     """
 
@@ -77,7 +61,7 @@ class Ranking:
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
     excluded: dict[str, str]
-    nameless: tuple[Nameless, ...] = ()
+    nameless: Mapping[str, float] = field(default_factory=dict)
     unfitted: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -87,22 +71,13 @@ class Ranking:
 
 
 def rank(
-    simulator: Simulator,
-    *,
-    mechanisms: Sequence[Mechanism] | None = None,
-    progress: Progress = lambda _: None,
+    simulator: Simulator, mechanisms: Sequence[Mechanism], *, progress: Progress = lambda _: None
 ) -> Ranking:
-    """Fit the baseline and every mechanism that is not excluded, by itself.
-
-    `mechanisms`: what to try; left out: the library, and every number of the sheet that may be
-    wrong.
-    """
+    """Fit the baseline and every mechanism that is not excluded, by itself."""
     progress("calibrating what is known within its uncertainty")
     base, stated = fit(simulator, ()), as_stated(simulator)
     situations = baseline_situations(simulator.problem)
     excluded, screened = {}, []
-    if mechanisms is None:
-        mechanisms = (*MECHANISMS, *NAMELESS, *simulator.problem.wrong_numbers)
     for mechanism in mechanisms:
         progress(f"screening {mechanism.name}")
         reason = _idle(mechanism, simulator.problem) or mechanism.ruled_out(situations)
@@ -120,10 +95,15 @@ def rank(
     fits = _leading_fits(simulator, base, stated, screened, progress)
     progress("sharpening the leading fits")
     fits = sharpened_leading(simulator, fits, base)
+    fitted = {f.name: f.log_evidence - base.log_evidence for f in fits}
+    nameless = {
+        s.mechanism.title: fitted.get(s.mechanism.name, s.log_bayes)
+        for s in screened
+        if not s.mechanism.named
+    }
     return Ranking(
         problem, base, stated, tuple(s for s in screened if s.mechanism.named),
-        tuple(f for f in fits if f.mechanisms[0].named), (), excluded,
-        tuple(_nameless(s, fits, base) for s in screened if not s.mechanism.named),
+        tuple(f for f in fits if f.mechanisms[0].named), (), excluded, nameless,
     )  # fmt: skip
 
 
@@ -149,12 +129,6 @@ def _leading_fits(
         fits.append(one)
         best = max(best, one.log_evidence - base.log_evidence)
     return fits
-
-
-def _nameless(screened: Screened, fits: Sequence[Fit], base: Fit) -> Nameless:
-    own = next((f for f in fits if f.mechanisms == (screened.mechanism,)), None)
-    gain = screened.log_bayes if own is None else own.log_evidence - base.log_evidence
-    return Nameless(screened, own, gain)
 
 
 def _idle(mechanism: Mechanism, problem: Problem) -> str:

@@ -19,10 +19,6 @@ class DiagnosisRules:
         0.3, "relative standard deviation from which a stated number is a guess [-]",
         "a strength by the class of the metal alone",
     )  # fmt: skip
-    wrong_nodes: int = rule(
-        9, "factors at which a wrong number is simulated [-]",
-        "as the mechanisms' own",
-    )  # fmt: skip
     temper: float = rule(
         0.7, "part of a gain in ln evidence that counts [-]",
         "0.5 to 0.8 tried on 103 sets of three makes: mean ln p -0.90, -0.82, -0.81, -0.81",
@@ -67,10 +63,7 @@ class DiagnosisRules:
         5, "unloadings of the solve [-]",
         "chosen: a law needs three, two between show the bend",
     )  # fmt: skip
-    solve_depths: int = rule(
-        60, "depths of the solve [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    solve_depths: int = rule(60, "depths of the solve [-]")
     fewest_readings: int = rule(
         6, "readings below which a set says nothing [-]",
         "a mechanism's size, and five that can contradict it",
@@ -140,14 +133,10 @@ class DiagnosisRules:
         8, "repeats beyond the first from which their own scatter is trusted [-]",
         "eight degrees of freedom tell a scatter to a quarter",
     )  # fmt: skip
-    same_speed: float = rule(
-        0.05, "width in ln speed within which impacts are one condition [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    same_speed: float = rule(0.05, "width in ln speed within which impacts are one condition [-]")
     speed_measured: float = rule(
-        0.003, "systematic relative error of a measured speed where none is stated [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.003, "systematic relative error of a measured speed where none is stated [-]"
+    )
     speed_from_height: float = rule(
         0.005, "the same of a speed from a height [-]",
         "a hundredth of the height: a millimetre of ten centimetres",
@@ -165,9 +154,8 @@ class DiagnosisRules:
         "a ruler in a picture",
     )  # fmt: skip
     reduction_left: float = rule(
-        0.25, "share of a reduction's error that its correction leaves [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.25, "share of a reduction's error that its correction leaves [-]"
+    )
     reduction_least: float = rule(
         0.003, "least relative error of a reduction [-]",
         "three digits",
@@ -257,9 +245,8 @@ class DiagnosisRules:
         "hardness over strength (core's tabor_spread); a balance; 0.02 mm of 5 mm",
     )  # fmt: skip
     dent_law_error: float = rule(
-        0.02, "relative error of a dent's diameter where the law's error has none [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        0.02, "relative error of a dent's diameter where the law's error has none [-]"
+    )
     step: float = rule(
         0.3, "step of derivatives [standard deviations]",
         "straight within it, beyond the round-off of simulations",
@@ -334,9 +321,8 @@ class DiagnosisRules:
         "beyond it thousands of scenes",
     )  # fmt: skip
     resolved: float = rule(
-        2.0, "places of a refined grid in a standard deviation that need no window [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        2.0, "places of a refined grid in a standard deviation that need no window [-]"
+    )
     window: float = rule(
         4.0, "half width of a window [standard deviations]",
         "beyond it one in 15 000",
@@ -375,10 +361,7 @@ class DiagnosisRules:
         2.5, "change within one round [prior deviations]",
         "as far as a response is nearly straight",
     )  # fmt: skip
-    metal_settled: float = rule(
-        0.03, "change at which it ends [prior deviations]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    metal_settled: float = rule(0.03, "change at which it ends [prior deviations]")
     metal_near: float = rule(
         0.4, "change below which the derivatives stay [prior deviations]",
         "straight within it",
@@ -399,10 +382,7 @@ class DiagnosisRules:
         10.0, "nats over the baseline from which a fit is sharpened [-]",
         "one in 20 000",
     )  # fmt: skip
-    near_leader: float = rule(
-        0.6, "part of the leading gain from which a fit is sharpened [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    near_leader: float = rule(0.6, "part of the leading gain from which a fit is sharpened [-]")
     leads: float = rule(
         3.0, "nats from which outliers are judged under the leading mechanism [-]",
         "twenty to one",
@@ -412,17 +392,13 @@ class DiagnosisRules:
         "one in a thousand: it changes the noise of all",
     )  # fmt: skip
     drift_freedom: int = rule(
-        6, "degrees of freedom beside the slope from which a drift is told [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        6, "degrees of freedom beside the slope from which a drift is told [-]"
+    )
     size_spread: float = rule(
         0.4, "standard deviation of the logarithm of the size of a law's error [-]",
         "a metal's 3 % may be 1.5 or 6",
     )  # fmt: skip
-    law_length: float = rule(
-        2.5, "correlation length of a law's error [ln(depth/R)]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    law_length: float = rule(2.5, "correlation length of a law's error [ln(depth/R)]")
     nulls: int = rule(
         500, "null sets that set the thresholds of a screening [-]",
         "probabilities of 0.002 are told",
@@ -431,22 +407,15 @@ class DiagnosisRules:
         2000, "the same with `confirm` [-]",
         "a level of 0.05 to a tenth",
     )  # fmt: skip
-    sample_step: float = rule(
-        0.5, "width of a move over that of the particles [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    sample_step: float = rule(0.5, "width of a move over that of the particles [-]")
     sample_left: float = rule(
         0.5, "part of the particles that still count after a step of temperature [-]",
         "usual in sequential Monte Carlo (Del Moral and others 2006)",
     )  # fmt: skip
     null_level: float = rule(
-        1.0, "standard deviation of a null law's level over the law's error [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    null_slope: float = rule(
-        0.4, "the same of its slope over ln(depth) [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+        1.0, "standard deviation of a null law's level over the law's error [-]"
+    )
+    null_slope: float = rule(0.4, "the same of its slope over ln(depth) [-]")
     rim: float = rule(
         1.05, "diameter of a dent's rim over that of its contact circle [-]",
         "within what finite elements of metals from perfectly plastic to n = 0.3 give",
@@ -459,10 +428,7 @@ class DiagnosisRules:
         120.0, "time steps of a null impact to its turning point [-]",
         "4e-5 in restitution, 2e-4 in force off the limit",
     )  # fmt: skip
-    null_smooth: float = rule(
-        0.01, "part of the approach speed below which friction fades [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
+    null_smooth: float = rule(0.01, "part of the approach speed below which friction fades [-]")
     assumed_modulus: float = rule(
         2e11, "modulus of a body of which the set says nothing [Pa]",
         "steel's",
@@ -520,11 +486,8 @@ class DiagnosisRules:
         (("rise_at_1000_per_s", (0.4, 0.35)), ("rate_exponent", (0.15, 0.08)),
          ("strength_kept", (0.87, 0.08))),
         "priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise) [-]",
-        "rises of 0.1 to 0.4 by C of Johnson and Cook, 0.6 to 1.9 by Cowper and Symonds",
-    )  # fmt: skip
-    same_condition: float = rule(
-        1.05, "ratio of speeds that are one condition [-]",
-        "as of the conditions themselves",
+        "rises of 0.1 to 0.4 by C of Johnson and Cook, 0.6 to 1.9 by Cowper and Symonds; of what "
+        "is kept the range of strain-rate-hardening",
     )  # fmt: skip
 
 

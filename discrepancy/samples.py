@@ -106,12 +106,12 @@ def drawn(problem: Problem, fitted: Fit, draws: int, rng: np.random.Generator) -
         sizes = rng.choice(len(odds), len(here), p=odds / odds.sum())
         for size in np.unique(sizes):
             at, part = here[sizes == size], fitted.mixture.parts[size]
-            A = np.hstack([part.scaled, part.form]) if part.form.size else part.scaled
+            A = np.hstack([part.scaled, part.form])
             half = part.whitening.T @ A
             u = rng.multivariate_normal(
                 half.T @ part.white(r), np.eye(A.shape[1]) - half.T @ half, len(at), method="eigh"
             )
-            z[at] = u[:, :n] * (part.prior if part.prior.size else 1.0)
+            z[at] = u[:, :n] * part.prior
             again[at] += problem.cells.value - r + u @ A.T
     found, units = _own(fitted, rows, rng)
     for k, q in enumerate(problem.nuisances):

@@ -18,33 +18,21 @@ from ..core.processes.threads import in_one_thread
 from ..dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism
 from ..dynamics.mechanisms.own import own_mechanisms, uncovered
 from ..recordings import RecordingSet
-from .baseline.laws import LawChoice
+from . import estimates
+from .baseline.laws import LawChoice, Progress
 from .choice.decide import Choice, decide
 from .choice.odds import OUTSIDE, Odds, odds_of
-from .choice.own_sets import FitTest, fit_test
 from .choice.pairs import with_pairs
-from .choice.thresholds import Nulls, null_residuals
+from .choice.thresholds import FitTest, Nulls, fit_test, null_residuals
 from .comparison.forward import Point, Simulator
 from .comparison.problem import problem_of
 from .correction import correct
-from .estimates import (
-    audit_rows,
-    improvement_of,
-    law_notes,
-    limits_of,
-    misfit_of,
-    notes_of,
-    parameters_of,
-    pulls_of,
-    scores_of,
-    surprises_of,
-)
 from .experiments.next_experiment import propose
 from .findings import After, Verdict
 from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
-from .rank import Progress, Ranking, rank
+from .rank import Ranking, rank
 from .rules import RULES
 
 # limit: next experiments that a verdict keeps [-]: a screen
@@ -69,14 +57,6 @@ class _Explained(NamedTuple):
     ranking: Ranking
     nulls: Nulls
     tests: dict[str, FitTest]
-
-
-class _Decided(NamedTuple):
-    """What was chosen; ln evidences of the leading explanations where they were sampled."""
-
-    choice: Choice
-    odds: Odds
-    sampled: dict[str, float]
 
 
 @in_one_thread
@@ -107,17 +87,18 @@ def diagnose(
     rng = np.random.default_rng(int(one_number(seed, key="seed", allowed="a whole number")))
     own = own_mechanisms(mechanisms)
     progress("auditing the inputs")
-    asked = _Asked(recordings, audit_rows(recordings), own, seed, rng, progress)
+    asked = _Asked(recordings, estimates.audit_rows(recordings), own, seed, rng, progress)
     chosen = law or ("table" if confirm else None)
     simulator = Simulator(problem_of(recordings, law=chosen, assume=assume, progress=progress))
     found = _explained(asked, simulator, nulls=RULES.confirmed_nulls if confirm else RULES.nulls)
     progress("deciding")
-    decided = _decided(found, {}, cautious)
+    sampled: dict[str, float] = {}
+    choice, odds = _decided(found, sampled, cautious)
     if confirm:
-        leading = [found.ranking.base, *decided.choice.members]
+        leading = [found.ranking.base, *choice.members]
         sampled = confirm_evidence(found.simulator, leading, rng, progress)
-        decided = _decided(found, sampled, cautious)
-    verdict = _told(asked, found, decided)
+        choice, odds = _decided(found, sampled, cautious)
+    verdict = _told(asked, found, choice, odds, sampled)
     if not history or not np.ptp(recordings.trials.sessions):
         return verdict
     return replace(verdict, history=_history(asked, verdict, chosen, assume))
@@ -134,21 +115,22 @@ def _history(
         part = asked.recordings.take(sessions <= session)
         simulator = Simulator(problem_of(part, law=law, assume=assume))
         earlier = _explained(asked, simulator, nulls=RULES.nulls)
-        odds = _decided(earlier, {}, cautious=False).odds
+        _, odds = _decided(earlier, {}, cautious=False)
         found.append(After(session, len(part.trials), dict(odds.probability)))
     return (*found, After(float(sessions.max()), len(sessions), verdict.probabilities))
 
 
-def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> _Decided:
+def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> tuple[Choice, Odds]:
+    """`sampled`: ln evidences of the leading explanations where they were sampled."""
     beside = {name: one.log_odds for name, one in found.tests.items()}
     odds = odds_of(found.ranking, sampled=sampled, beside=beside)
-    return _Decided(decide(found.ranking, odds, cautious=cautious), odds, sampled)
+    return decide(found.ranking, odds, cautious=cautious), odds
 
 
 def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained:
     """Fit the baseline, every wrong number and mechanism, and the pairs that gain by it."""
     library = (*MECHANISMS, *NAMELESS, *asked.own, *simulator.problem.wrong_numbers)
-    ranking = rank(simulator, mechanisms=library, progress=asked.progress)
+    ranking = rank(simulator, library, progress=asked.progress)
     simulator = simulator.of(ranking.problem)
     ranking = with_pairs(simulator, ranking, progress=asked.progress)
     asked.progress("simulating sets in which nothing is missing")
@@ -157,10 +139,11 @@ def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained
     return _Explained(simulator, ranking, residuals, tests)
 
 
-def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
+def _told(
+    asked: _Asked, found: _Explained, choice: Choice, odds: Odds, sampled: dict[str, float]
+) -> Verdict:
     """Locate the mismatch, predict what was left out, propose, and say it all."""
     simulator, ranking, nulls, tests = found
-    choice, odds, sampled = decided
     problem, base = ranking.problem, ranking.base
     asked.progress("predicting conditions that were left out")
     left_out = {f.name: held_out(problem, f) for f in ranking.fits}
@@ -168,25 +151,24 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     proposals, session = propose(simulator, ranking, odds, asked.rng)
     best = choice.members[0] if choice.members else base
     stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
-    misfit = misfit_of(problem, base, stated)
+    misfit = estimates.misfit_of(problem, base, stated)
     misses = int(choice.verdict not in ("adequate", "undetermined"))
     p_values = {name: one.p_value for name, one in tests.items()}
-    notes = (*notes_of(problem, best), *law_notes(problem, misfit), *uncovered(asked.own))
+    told = (*estimates.notes_of(problem, best), *estimates.law_notes(problem, misfit))
     return Verdict(
         name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
-        scores=scores_of(ranking, p_values, left_out, sampled),
+        scores=estimates.scores_of(ranking, p_values, left_out, sampled),
         located=locate(problem, base, nulls, least=misses),
-        parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(problem, best),
-        surprise=surprises_of(problem, best), excluded=ranking.excluded,
-        limits=limits_of(ranking),
-        improvement=improvement_of(left_out[base.name], left_out[best.name]),
+        parameters=estimates.parameters_of(simulator, best),
+        nuisance_pulls={n.name: float(best.z[i]) for i, n in enumerate(problem.nuisances)},
+        surprise=estimates.surprises_of(problem, best), excluded=ranking.excluded,
+        limits=estimates.limits_of(ranking),
+        improvement=estimates.improvement_of(left_out[base.name], left_out[best.name]),
         misfit=misfit, stated=stated,
         corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
         proposals=tuple(proposals[: _PROPOSED]), session=session, history=(),
-        notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
+        notes=(*told, *uncovered(asked.own)), ranking=ranking, best=best,
+        impacts=simulator.tally["impacts"],
         titles={m.name: m.title for m in (*MECHANISMS, *asked.own, *problem.wrong_numbers)},
     )  # fmt: skip
-
-
-__all__ = ["Verdict", "diagnose"]

@@ -22,13 +22,11 @@ from ..core.arrays import Array, Mask
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 from ..discrepancy import Verdict
-from ..discrepancy.comparison.cells import Cells
 from ..discrepancy.comparison.forward import Point, Simulator
 from ..discrepancy.comparison.problem import Problem
-from ..discrepancy.inference.fit import fit
-from ..discrepancy.inference.window import sharpened
+from ..discrepancy.inference.fit import fit, sharpened
 from ..discrepancy.rules import RULES as DIAGNOSIS
-from ..dynamics.mechanisms.base import Constants, Mechanism
+from ..dynamics.mechanisms.base import Constants
 from ..fitting.case_table import pair_table
 from ..models.table import PairTable, table_law
 from ..models.table_file import write_table
@@ -97,7 +95,8 @@ def close(
             source=verdict.name, key="--solve", allowed=" or ".join(CARRIED),
         )  # fmt: skip
     out = _kept_out(problem)
-    simulator, slower = Simulator(problem), Simulator(_of_cells(problem, ~out))
+    simulator = Simulator(problem)
+    slower = simulator.of(replace(problem, cells=problem.cells.take(~out)))
     base = fit(slower, (), start=verdict.ranking.base)
     refit = sharpened(slower, fit(slower, best.mechanisms, start=best, place=best.place))
     constants, z = refit.grid.values(refit.place), refit.z
@@ -106,6 +105,7 @@ def close(
     peaks = simulator.observe(best.mechanisms, [Point(z, constants)])["peak_depth_m"][0]
     bodies = _of_the_metal(problem, z)
     rest = tuple(m for m in best.mechanisms if m not in carried)
+    values = {m.name: constants[m.name] for m in rest}
     solver = fem.Accuracy.quick() if accuracy is None else accuracy
     found, tables = np.full(len(problem.cells), np.nan), []
     for k, press in enumerate(presses(problem, bodies, carried, constants, peaks), start=1):
@@ -117,7 +117,8 @@ def close(
         table = pair_table(one.solution, one.uncertainty)
         tables.append(table)
         here = np.isin(problem.cells.condition, press.conditions)
-        found[here] = _struck(problem, table, press, rest, bodies, constants)[here]
+        alone = Simulator(_alone(problem, here, press, table))
+        found[here] = alone.predict(rest, [Point(bodies, values)])[0]
     return Closed(constants, tuple(_rows(problem, out, plain, named, found)), tuple(tables))
 
 
@@ -151,16 +152,6 @@ def _kept_out(problem: Problem) -> Mask:
     return out if np.sum(~out) >= DIAGNOSIS.fewest_readings else np.zeros_like(out)
 
 
-def _of_cells(problem: Problem, kept: Mask) -> Problem:
-    """The problem with some of its cells alone; its conditions are all there."""
-    c = problem.cells
-    cells = Cells(
-        c.condition[kept], tuple(np.array(c.observable)[kept].tolist()), c.value[kept], c.std[kept],
-        c.count[kept],
-    )  # fmt: skip
-    return replace(problem, cells=cells)
-
-
 def _of_the_metal(problem: Problem, z: Array) -> Array:
     """The unknowns without what a closed form may be off, and with all strikers as stated."""
     kept = [not n.name.startswith("strikers.") for n in problem.nuisances]
@@ -168,25 +159,17 @@ def _of_the_metal(problem: Problem, z: Array) -> Array:
     return np.where(kept, z, 0.0)
 
 
-def _struck(
-    problem: Problem, table: PairTable, press: MetalPress, rest: tuple[Mechanism, ...], z: Array,
-    constants: Constants,
-) -> Array:  # fmt: skip
-    """Predictions (m,) of the conditions of a press by its table; nan elsewhere."""
+def _alone(problem: Problem, here: Mask, press: MetalPress, table: PairTable) -> Problem:
+    """The conditions of a press, whose cells are `here`, with its table for the law."""
     number = {k: i for i, k in enumerate(press.conditions)}
-    here = np.isin(problem.cells.condition, press.conditions)
-    some = _of_cells(problem, here)
-    place = np.array([number[k] for k in some.cells.condition], dtype=np.intp)
+    cells = problem.cells.take(here)
+    place = np.array([number[k] for k in cells.condition], dtype=np.intp)
     own = [problem.conditions[k] for k in press.conditions]
-    alone = replace(
-        some, laws=dict.fromkeys(some.laws, table_law([table], name="finite elements")),
-        cells=replace(some.cells, condition=place),
+    return replace(
+        problem, laws=dict.fromkeys(problem.laws, table_law([table], name="finite elements")),
+        cells=replace(cells, condition=place),
         conditions=tuple(replace(c, after=number.get(c.after, -1)) for c in own),
     )  # fmt: skip
-    values = {m.name: constants[m.name] for m in rest}
-    found = np.full(len(problem.cells), np.nan)
-    found[here] = Simulator(alone).predict(rest, [Point(z, values)])[0]
-    return found
 
 
 def _rows(

@@ -22,7 +22,7 @@ from scipy.special import logsumexp
 
 from ..core.arrays import Array
 from ..core.processes.threads import in_one_thread
-from ..discrepancy.choice.pairs import PairEffect, with_pairs
+from ..discrepancy.choice.pairs import pair_effect, with_pairs
 from ..discrepancy.comparison.forward import Simulator
 from ..discrepancy.comparison.problem import Problem, problem_of
 from ..discrepancy.inference.derivatives import FORMS, derivatives
@@ -30,6 +30,7 @@ from ..discrepancy.inference.fit import Fit, fit, fit_anchored
 from ..discrepancy.inference.linear import Mixture
 from ..discrepancy.rank import rank, screen, sharpened_leading
 from ..discrepancy.unknowns.lawerror import SIZES
+from ..dynamics.mechanisms import MECHANISMS, NAMELESS
 from ..recordings import read
 from ..recordings.shipped import FOLDER
 from .calibration import append, shares
@@ -67,9 +68,9 @@ def fitted(simulator: Simulator, leading: Fit) -> Fit:
     ]
     if len(found) == 1:
         return sharpened_leading(simulator, found, base)[0]
-    both = PairEffect(simulator, *screened)
+    both = pair_effect(simulator, *screened)
     start = max(found, key=lambda f: f.log_evidence)
-    pair = fit_anchored(simulator, both.mechanisms, both, start=start, place=leading.place)
+    pair = fit_anchored(simulator, leading.mechanisms, both, start=start, place=leading.place)
     return sharpened_leading(simulator, [pair], base, most=2, rounds=5)[0]
 
 
@@ -106,12 +107,10 @@ def draw(simulator: Simulator, found: Fit, rng: np.random.Generator) -> Drawn:
     mixture = Mixture.of(linear, problem.n_nuisances, SIZES, FORMS)
     each = mixture.each(r)
     part = mixture.parts[int(rng.choice(len(each), p=np.exp(each - logsumexp(each))))]
-    form = part.form if part.form.size else np.zeros((len(r), 0))
-    columns = np.hstack([part.scaled, form, scale])
+    columns = np.hstack([part.scaled, part.form, scale])
     gain = np.linalg.solve(noise + columns @ columns.T, columns).T
     unit = gain @ r + _root(np.eye(len(gain)) - gain @ columns) @ rng.normal(size=len(gain))
-    prior = part.prior if part.prior.size else np.ones(problem.n_z)
-    z = prior * unit[: problem.n_z]
+    z = part.prior * unit[: problem.n_z]
     made, _ = derivatives(simulator, found.mechanisms, values, z)
     made = made + columns[:, problem.n_z :] @ unit[problem.n_z :]
     return Drawn(place, z, made + _root(noise) @ rng.normal(size=len(r)))
@@ -145,7 +144,7 @@ def lines(out: Path, draws: int, sets: Mapping[str, tuple[str, ...]]) -> Iterato
         if not todo:
             continue
         simulator = Simulator(problem_of(read(FOLDER / name)))
-        ranking = rank(simulator)
+        ranking = rank(simulator, (*MECHANISMS, *NAMELESS, *simulator.problem.wrong_numbers))
         simulator = simulator.of(ranking.problem)
         ranking = with_pairs(simulator, ranking)
         found = next(f for f in ranking.fits if f.names == mechanisms)

@@ -17,11 +17,10 @@ from ..comparison.cells import Scatter
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
-from ..unknowns.drift import Drift
-from ..unknowns.followed import Followed
+from ..unknowns.repeats import Drift, Followed
 from ..unknowns.wrong_number import is_wrong
 from .families import Family, family_of
-from .odds import BASELINE, OUTSIDE, SURE, Odds
+from .odds import BASELINE, OUTSIDE, Odds
 
 # limit: share of what is outside from which one without a name is said to be like it [-]; more
 # likely than not
@@ -48,14 +47,7 @@ class Choice:
 def decide(ranking: Ranking, odds: Odds, *, cautious: bool = False) -> Choice:
     """Return the verdict by the probabilities of the explanations.
 
-    Parameters
-    ----------
-    ranking
-        All fits.
-    odds
-        Their probabilities.
-    cautious
-        Whether a name, or 'nothing is missing', needs more than one half.
+    `cautious`: whether a name, or 'nothing is missing', needs more than one half.
     """
     problem = ranking.problem
     first = (*map(_follows, problem.followed), *map(_scattered, problem.scatters))
@@ -123,17 +115,19 @@ def _fits(ranking: Ranking, labels: Iterable[str]) -> tuple[Fit, ...]:
 
 def _nevertheless(odds: Odds) -> Iterable[str]:
     """What few numbers say all the same: that something is missing, not what."""
-    if 1.0 - odds.baseline > SURE:
+    missing = 1.0 - odds.probability[BASELINE]
+    if missing > RULES.sure:
         yield (
-            f"something is missing with a probability of {_percent(1.0 - odds.baseline)}; the "
-            "numbers are too few to say what"
+            f"something is missing with a probability of {_percent(missing)}; the numbers are too "
+            "few to say what"
         )
 
 
 def _odds_told(odds: Odds) -> Iterable[str]:
+    missing, outside = 1.0 - odds.probability[BASELINE], odds.probability[OUTSIDE]
     yield (
-        f"something is missing with a probability of {_percent(1.0 - odds.baseline)}; something "
-        f"that is not in the library with {_percent(odds.outside)}"
+        f"something is missing with a probability of {_percent(missing)}; something that is not in "
+        f"the library with {_percent(outside)}"
     )
     likely = [f"{name} {_percent(p)}" for name, p in list(odds.inclusion.items())[:3] if p > 0.01]
     if likely:

@@ -25,9 +25,6 @@ from .outside import odd_repeats, outside_of
 OUTSIDE = "outside-library"
 BASELINE = "baseline"
 PRIORS = dict(RULES.priors)
-"""Before the comparison, shared alike within each kind; `second` is the probability of another one
-beside the first."""
-SURE = RULES.sure
 STRENGTH = "target.Sy_Pa"
 METAL = frozenset({"strain-rate-hardening", "work-hardening"})
 """What every metal does."""
@@ -37,29 +34,14 @@ METAL = frozenset({"strain-rate-hardening", "work-hardening"})
 class Odds:
     """Probabilities of the explanations.
 
-    Parameters
-    ----------
-    names
-        Label to its mechanisms and wrong numbers: `baseline` and `OUTSIDE` have none.
-    probability
-        Label to the posterior probability, most probable first.
-    alike
-        What has no name of its own, by its title, to its share of what is outside.
+    - `names`: label to its mechanisms and wrong numbers: `baseline` and `OUTSIDE` have none.
+    - `probability`: label to the posterior probability, most probable first.
+    - `alike`: what has no name of its own, by its title, to its share of what is outside.
     """
 
     names: Mapping[str, tuple[str, ...]]
     probability: Mapping[str, float]
     alike: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def baseline(self) -> float:
-        """Probability that nothing is missing."""
-        return self.probability[BASELINE]
-
-    @property
-    def outside(self) -> float:
-        """Probability of something that is not in the library."""
-        return self.probability[OUTSIDE]
 
     @property
     def leader(self) -> str:
@@ -82,15 +64,11 @@ def odds_of(
 ) -> Odds:  # fmt: skip
     """Return the probabilities of a ranking's explanations.
 
-    Parameters
-    ----------
-    ranking
-        All fits; a mechanism without a full fit counts by its screening.
-    sampled
-        Sampled ln evidence over the baseline, of the explanations that have it.
-    beside
-        Ln Bayes factor of something that acts beside each fit, by how that fits: what a fit that
-        is bad loses by it, and what something outside has for each.
+    A mechanism without a full fit counts by its screening.
+
+    - `sampled`: sampled ln evidence over the baseline, of the explanations that have it.
+    - `beside`: ln Bayes factor of something that acts beside each fit, by how that fits: what a fit
+      that is bad loses by it, and what something outside has for each.
     """
     gained = gains(ranking)
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
@@ -208,9 +186,8 @@ def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[st
     free = float(outside_of(ranking.problem, base).log_likelihood(base.residual))
     shared = RULES.nameless if ranking.nameless else 0.0
     parts = {"": math.log(1.0 - shared) + free - base.log_evidence}
-    for n in ranking.nameless:
-        own = math.log(shared / len(ranking.nameless))
-        parts[n.screened.mechanism.title] = own + n.log_bayes
+    for title, gain in ranking.nameless.items():
+        parts[title] = math.log(shared / len(ranking.nameless)) + gain
     whole = float(logsumexp(list(parts.values())))
     alike = {title: math.exp(x - whole) for title, x in parts.items() if title}
     prior = math.log(PRIORS[OUTSIDE])

@@ -5,7 +5,7 @@ other half knows nothing of contacts: each observable departs from the baseline 
 smoothly over what varies in the set, or from condition to condition. What repeats say of
 themselves, whatever the simulation, speaks for it as well: a drift over the order of testing, a
 column `x_NAME` that they follow, and scatter beyond any noise that a laboratory misjudges. Beside
-all that stands physics that a verdict has no name for (`mechanisms.NAMELESS`, `Judge`).
+all that stands physics that a verdict has no name for (`mechanisms.NAMELESS`).
 """
 
 from __future__ import annotations
@@ -24,9 +24,6 @@ from ..inference.linear import Mixture
 from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
 
-AMPLITUDES = RULES.amplitudes
-"""Of departures that no law is behind: from what four observables just show to the gross."""
-
 
 def outside_of(problem: Problem, base: Fit) -> Mixture:
     """Return the likelihood of the baseline's residuals if something outside acts."""
@@ -39,10 +36,10 @@ def outside_of(problem: Problem, base: Fit) -> Mixture:
         scale[here] = np.sqrt(np.mean(cells.value[here] ** 2)) if here.any() else 1.0
     alike = same_observable(problem) * nearness(problem, RULES.smooth)
     for shape in (alike, np.eye(len(cells))):
-        for amplitude in AMPLITUDES:
+        for amplitude in RULES.amplitudes:
             more = amplitude**2 * np.outer(scale, scale) * shape
             parts.append(replace(plain, noise=plain.noise + more))
-            weights.append(0.5 / (2 * len(AMPLITUDES)))
+            weights.append(0.5 / (2 * len(RULES.amplitudes)))
     return Mixture(tuple(parts), np.log(weights))
 
 

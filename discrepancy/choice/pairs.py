@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ...core.arrays import Array
-from ...dynamics.mechanisms.base import Mechanism
+from ..baseline.laws import Progress
 from ..comparison.forward import Simulator
 from ..inference.fit import Fit, fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual
-from ..rank import Progress, Ranking, Screened, sharpened_leading
+from ..rank import Ranking, Screened, sharpened_leading
 from ..rules import RULES
 from ..unknowns.wrong_number import is_wrong
 from .odds import Priors, gains, members, tempered
@@ -68,8 +68,9 @@ def with_pairs(
         progress(f"fitting {c.names[0]} with {c.names[1]}")
         near = [f for f in ranking.singles if f.mechanisms[0].name in c.names]
         start = max(near, key=lambda f: f.log_evidence, default=ranking.base)
-        both = PairEffect(simulator, c.one, c.two)
-        pairs.append(fit_anchored(simulator, both.mechanisms, both, start=start, place=c.place))
+        both = pair_effect(simulator, c.one, c.two)
+        pair = c.one.mechanism, c.two.mechanism
+        pairs.append(fit_anchored(simulator, pair, both, start=start, place=c.place))
         own = pairs[-1].log_evidence - ranking.base.log_evidence
         best = max(best, weight(c.names, own))
     lead = max((f.log_evidence for f in ranking.singles), default=0.0)
@@ -137,32 +138,26 @@ def _beside(ranking: Ranking, lead: Fit) -> Iterable[_Candidate]:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PairEffect:
-    """Effect of two mechanisms: the sum of their own, and what they do to each other.
+def pair_effect(
+    simulator: Simulator, one: Screened, two: Screened
+) -> Callable[[Array, Array], Array]:
+    """Return what two mechanisms do: the sum of their own effects, and what they do to each other.
 
-    The mutual part is simulated near the place that is asked for and kept constant beyond.
+    Of unknowns and a place, the change of the cells over the pair's refined grid, (k, m). The
+    mutual part is simulated near the place and kept constant beyond.
     """
+    n, pair = len(one.grid.axes), (one.mechanism, two.mechanism)
+    grid = Grid((*one.grid.axes, *two.grid.axes))
+    first = one.grid.refine(one.change, grid.fine[:n])
+    second = two.grid.refine(two.change, grid.fine[n:])
+    total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])
 
-    simulator: Simulator
-    one: Screened
-    two: Screened
-
-    @property
-    def mechanisms(self) -> tuple[Mechanism, Mechanism]:
-        """Both."""
-        return self.one.mechanism, self.two.mechanism
-
-    def __call__(self, z: Array, place: Array) -> Array:
-        """Return the change of the cells over the pair's refined grid, (k, m)."""
-        n = len(self.one.grid.axes)
-        grid = Grid((*self.one.grid.axes, *self.two.grid.axes))
-        first = self.one.grid.onto(self.one.change, grid.fine[:n])
-        second = self.two.grid.onto(self.two.change, grid.fine[n:])
-        total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])
+    def effect(z: Array, place: Array) -> Array:
         count = 3 if len(place) == 2 else 2
         corners = [
             np.linspace(max(x - RULES.pair_step, 0.0), min(x + RULES.pair_step, 1.0), count)
             for x in place
         ]
-        return total + mutual(self.simulator, self.mechanisms, grid, corners, z)
+        return total + mutual(simulator, pair, grid, corners, z)
+
+    return effect

@@ -12,10 +12,9 @@ import numpy as np
 
 from ...core.arrays import Array, Indices, Mask
 from ...core.observables import OBSERVABLES
-from ..curves import Readings
+from ..curves.readings import Readings
 from ..rules import RULES
-from ..unknowns.drift import Drift, drift_of
-from ..unknowns.followed import Entries, Followed, followed_of
+from ..unknowns.repeats import Drift, Entries, Followed, drift_of, followed_of
 from .conditions import Condition
 
 
@@ -41,6 +40,33 @@ class Cells:
         """Whether each cell is a logarithm."""
         return np.array([OBSERVABLES[name].log for name in self.observable], dtype=bool)
 
+    def take(self, which: Mask) -> Cells:
+        """Return some of them."""
+        observable = tuple(n for n, here in zip(self.observable, which, strict=True) if here)
+        return Cells(
+            self.condition[which], observable, self.value[which], self.std[which],
+            self.count[which],
+        )  # fmt: skip
+
+    def and_new(self, rows: Sequence[tuple[int, str, float]]) -> Cells:
+        """Return them before cells of one reading that was not made yet.
+
+        `rows`: condition, observable and standard error of each.
+        """
+        condition, observable, std = zip(*rows, strict=True) if rows else ((), (), ())
+        n = len(rows)
+        index, one = np.array(condition, dtype=np.intp), np.ones(n, dtype=np.intp)
+        return joined([self, Cells(index, observable, np.zeros(n), np.array(std), one)])
+
+
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Return the cells of several, one behind another."""
+    condition, value, std, count = (
+        np.concatenate([getattr(p, key) for p in parts])
+        for key in ("condition", "value", "std", "count")
+    )
+    return Cells(condition, tuple(n for p in parts for n in p.observable), value, std, count)
+
 
 NO_CELLS = Cells(
     np.zeros(0, dtype=np.intp), (), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.intp)
@@ -63,16 +89,6 @@ class ReducedRepeats(NamedTuple):
     scatters: tuple[Scatter, ...]
     followed: tuple[Followed, ...]
     notes: tuple[str, ...]
-
-
-class _Mean(NamedTuple):
-    """One cell before the floor of its standard error."""
-
-    condition: int
-    observable: str
-    value: float
-    std: float
-    trials: int
 
 
 class _Repeats(NamedTuple):
@@ -98,9 +114,9 @@ class _Repeats(NamedTuple):
 
 
 class _Compared(NamedTuple):
-    """One observable over all conditions: means, repeats, how many fell out, how they scatter."""
+    """One observable over all conditions: cells, repeats, how many fell out, how they scatter."""
 
-    means: list[_Mean]
+    cells: Cells
     repeats: list[_Repeats]
     dropped: int
     scatter: Scatter | None
@@ -137,24 +153,9 @@ def cells_of(
     ]
     followed = tuple(_followed(found, varied))
     known = {f.observable for f in followed}
-    means = [mean for one in found.values() for mean in one.means]
-    size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
-    std = np.array([m.std for m in means])
-    of_value = np.array([
-        RULES.gauge_floor * (1.0 if OBSERVABLES[m.observable].log else size[m.observable])
-        for m in means
-    ])  # fmt: skip
-    one_reading = std * np.sqrt([m.trials for m in means])
-    floor = np.minimum(of_value, RULES.noise_floor * one_reading)
-    cells = Cells(
-        np.array([m.condition for m in means], dtype=np.intp),
-        tuple(m.observable for m in means),
-        np.array([m.value for m in means]),
-        np.hypot(std, floor),
-        np.array([m.trials for m in means], dtype=np.intp),
-    )
     return ReducedRepeats(
-        cells, tuple(d for d in drifts if d is not None),
+        joined([NO_CELLS, *(one.cells for one in found.values())]),
+        tuple(d for d in drifts if d is not None),
         tuple(
             one.scatter
             for name, one in found.items()
@@ -187,7 +188,7 @@ def _compared(
     if dropped > max(1.0, RULES.wild * total):
         # so many are no slips: their scatter is the noise
         kept, dropped = [np.ones(len(k), dtype=bool) for k in kept], 0
-    means, repeats = [], []
+    rows, repeats = [], []
     squares, degrees = 0.0, 0
     for number, (all_of, keep) in enumerate(zip(parted, kept, strict=True)):
         if not keep.any():
@@ -198,14 +199,28 @@ def _compared(
         mean = float(np.sum(weight * r.value) / np.sum(weight))
         squares += float(np.sum(((r.value - mean) / r.apart) ** 2))
         degrees += len(keep[keep]) - 1
-        std = float(np.sum(weight) ** -0.5)
-        means.append(_Mean(number, name, mean, std, int(keep.sum())))
+        rows.append((number, mean, float(np.sum(weight) ** -0.5), int(keep.sum())))
     ratio = squares / degrees if degrees >= RULES.own_scatter else 1.0
-    if ratio <= 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
-        return _Compared(means, repeats, dropped, None)
-    times = math.sqrt(ratio)
-    wider = [m._replace(std=m.std * times) for m in means]
-    return _Compared(wider, repeats, dropped, Scatter(name, times, degrees))
+    scatter = None
+    if ratio > 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
+        scatter = Scatter(name, math.sqrt(ratio), degrees)
+    return _Compared(_floored(name, rows, scatter), repeats, dropped, scatter)
+
+
+def _floored(
+    name: str, rows: Sequence[tuple[int, float, float, int]], scatter: Scatter | None
+) -> Cells:
+    """Cells of an observable from condition, mean, standard error and number of readings."""
+    condition, value, std, count = np.array(rows).reshape(-1, 4).T
+    std = std * (scatter.ratio if scatter else 1.0)
+    size = 1.0
+    if len(value) and not OBSERVABLES[name].log:
+        size = float(np.sqrt(np.mean([x**2 for x in value.tolist()])))
+    floor = np.minimum(RULES.gauge_floor * size, RULES.noise_floor * (std * np.sqrt(count)))
+    return Cells(
+        condition.astype(np.intp), (name,) * len(value), value, np.hypot(std, floor),
+        count.astype(np.intp),
+    )  # fmt: skip
 
 
 def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Condition) -> _Repeats:
@@ -219,23 +234,13 @@ def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Conditio
         index = index[values[index] > 0.0]
     y = np.log(values[index]) if log else values[index]
     s = std[index] / np.abs(values[index]) if log else std[index]
-    # with the power that a plastic contact has
+    # with the power that a plastic contact has, d y / d ln v
     mean = c.speed if c.press is None else c.press.load
-    power = _power(name, y)
+    power = OBSERVABLES[name].power * (np.ones(y.shape) if log else y)
     y = y - power * np.log(speeds[index] / mean)
     # a height that was set once is off for all alike
     off = 0.0 if c.setting else c.speed_spread * math.sqrt(len(c.trials))
     return _Repeats(index, place[index], y, s, np.hypot(s, power * off))
-
-
-def _rms(values: Sequence[float]) -> float:
-    return float(np.sqrt(np.mean([x**2 for x in values])))
-
-
-def _power(name: str, y: Array) -> Array:
-    """D y / d ln v, y a logarithm or not."""
-    row = OBSERVABLES[name]
-    return np.full(y.shape, row.power) if row.log else row.power * y
 
 
 def _kept(y: Array, s: Array) -> Mask:

@@ -11,14 +11,9 @@ from ...dynamics import Approach, Press
 from ...dynamics.mechanisms.around import surroundings_of, weaker_table
 from ...dynamics.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
-from ...recordings.checks.press import LOAD_CLASS as LOAD_CLASS
 from ...recordings.noise import bins
 from ...recordings.rules import RULES as RECORDINGS
 from ..rules import RULES
-
-SPEED_MEASURED = RULES.speed_measured
-SPEED_FROM_HEIGHT = RULES.speed_from_height
-"""Systematic relative error of a speed of approach, where nothing is stated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +84,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         name = trials.striker[first]
         v = float(np.mean(approach.normal[rows]))
         relative = approach.normal_std[rows] / approach.normal[rows]
-        unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
+        unknown = RULES.speed_measured if timed[first] else RULES.speed_from_height
         press = None
         if trials.pressed[first]:
             relative, unknown = recordings.load_std[rows] / trials.load_N[rows], RULES.load_repeats

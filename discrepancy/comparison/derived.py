@@ -14,7 +14,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.inputs.second_sphere import struck_sphere
 from ...recordings import RecordingSet
-from ..curves import Readings
+from ..curves.readings import Readings
 from ..rules import RULES
 
 
@@ -73,6 +73,3 @@ def _relations(recordings: RecordingSet, readings: Mapping[str, Readings]) -> It
         value = along / ((1.0 + seen["restitution"]) * approach.normal)
         words = "the change of tangential over that of normal speed"
         yield _Relation("friction_impulse_ratio", np.where(ball, value, np.nan), words)
-
-
-__all__ = ["derived_columns"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -84,19 +85,15 @@ def _struck(scenes: list[Scene]) -> Array:
     return rows
 
 
-@dataclass(eq=False)
-class SimulationTally:
-    """Impacts that were simulated, over all problems that share the count."""
-
-    impacts: int = 0
-
-
 @dataclass(frozen=True, eq=False)
 class Simulator:
-    """Predicts the cells of a problem, and counts the impacts that it takes."""
+    """Predicts the cells of a problem, and counts the impacts that it takes.
+
+    `tally`: `impacts` that were simulated, over all problems that share the count.
+    """
 
     problem: Problem
-    tally: SimulationTally = field(default_factory=SimulationTally)
+    tally: Counter[str] = field(default_factory=Counter)
 
     def of(self, problem: Problem) -> Simulator:
         """Return the simulator of another problem, with the same tally."""
@@ -152,7 +149,7 @@ class Simulator:
         scenes = [s for s, _ in situations]
         rows = _struck_or_pressed(scenes)
         self._later_blows(scenes, rows)
-        self.tally.impacts += len(rows)
+        self.tally["impacts"] += len(rows)
         shape = (len(points), len(problem.conditions))
         seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
         seen["press_depth_m"] = rows[:, _PRESS_DEPTH].copy()

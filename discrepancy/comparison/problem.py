@@ -19,25 +19,16 @@ from ...dynamics.files.bodies import bodies_of
 from ...dynamics.files.second import second_of
 from ...dynamics.mechanisms import MECHANISMS
 from ...dynamics.mechanisms.arithmetic import as_deep, deepest
-from ...dynamics.mechanisms.base import Constants, Mechanism, Surroundings
+from ...dynamics.mechanisms.base import Constants, Mechanism
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ...recordings.bench import Bench
 from ..baseline.laws import LawChoice, laws_of, measured_where_unknown, without_curves
-from ..curves import readings_of
+from ..curves.readings import readings_of
 from ..rules import RULES
-from ..unknowns.drift import Drift
-from ..unknowns.followed import Followed
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error
-from ..unknowns.nuisances import (
-    ASSUMED_E,
-    ASSUMED_NU,
-    GAUGE,
-    LOAD_SCALE,
-    RIM_SCALE,
-    Nuisance,
-    nuisances_of,
-)
+from ..unknowns.nuisances import GAUGE, LOAD_SCALE, RIM_SCALE, Nuisance, nuisances_of
+from ..unknowns.repeats import Drift, Followed
 from ..unknowns.wrong_number import WrongNumber, wrong_numbers
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
@@ -152,11 +143,6 @@ class Problem:
         places = [i for name, i in self.scales if name == observable]
         return math.prod(self.nuisances[i].at(float(z[i])) for i in places)
 
-    @property
-    def fresh(self) -> Problem:
-        """The same with every blow on fresh metal."""
-        return replace(self, conditions=tuple(replace(c, after=-1) for c in self.conditions))
-
     def rig_at(self, z: Array) -> RigNumbers:
         """Return the rig's numbers at the unknowns z, shape (n_z,)."""
         # written out: a method would be called for every number of every scene
@@ -262,7 +248,9 @@ def problem_of(
     nuisances = nuisances_of(recordings, conditions)
     plain = without_curves(setup.target)
     laws = dict.fromkeys((c.striker for c in conditions), plain)
-    rig = setup.numbers(source=recordings.name).assuming(E_Pa=ASSUMED_E, nu=ASSUMED_NU)
+    rig = setup.numbers(source=recordings.name).assuming(
+        E_Pa=RULES.assumed_modulus, nu=RULES.assumed_poisson
+    )
     problem = Problem(
         recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR, bench=setup.rig,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
@@ -291,9 +279,11 @@ def problem_of(
     # the stiffness of what is taken as measured moves nothing that was read
     idle = (".E_Pa",) if unknown else ()
     noted = (n.note for n in nuisances if n.note and not n.name.endswith(idle))
-    assumed = [*_acting(problem), *noted]
+    size = "taken to act, at its stated or published size"
+    acting = (f"{size}: {m.title} ({m.name})" for m in problem.assumed)
     notes = (
-        *recordings.notes, *unknown, *told, *blows, *assumed, *unread, *again.values(), *seen.notes,
+        *recordings.notes, *unknown, *told, *blows, *acting, *noted, *unread, *again.values(),
+        *seen.notes,
     )  # fmt: skip
     return replace(
         problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
@@ -304,7 +294,8 @@ def problem_of(
 def _with_assumed(problem: Problem, names: Iterable[str], stated: Sequence[Scene]) -> Problem:
     """Return the problem with what is taken to act, by its names."""
     situations = [(s, c.around) for c, s in zip(problem.conditions, stated, strict=True)]
-    known = {m.name: m for m in MECHANISMS if _sized(m, situations[0][1])}
+    sized = ((m, m.parameters[0], m.published(situations[0][1])) for m in MECHANISMS)
+    known = {m.name: m for m, size, numbers in sized if numbers[size.name] != size.neutral}
     names = dict.fromkeys(names)
     for name in names:
         why = known[name].ruled_out(situations) if name in known else "no published size for it"
@@ -315,23 +306,13 @@ def _with_assumed(problem: Problem, names: Iterable[str], stated: Sequence[Scene
     return replace(problem, assumed=tuple(known[name] for name in names))
 
 
-def _acting(problem: Problem) -> list[str]:
-    size = "taken to act, at its stated or published size"
-    return [f"{size}: {m.title} ({m.name})" for m in problem.assumed]
-
-
-def _sized(m: Mechanism, around: Surroundings) -> bool:
-    size = m.parameters[0]
-    return m.published(around)[size.name] != size.neutral
-
-
 def _of_its_metal(
     problem: Problem, recordings: RecordingSet, solve: bool, progress: Callable[[str], None]
 ) -> tuple[Problem, tuple[str, ...]]:
     """The problem with the laws of the set's own metals, and what to say of them."""
     pairs: dict[str, Pair] = {}
     depths: dict[str, list[float]] = {}
-    stated = problem.scenes(np.zeros(problem.n_nuisances))
+    stated = problem.scenes(np.zeros(problem.n_z))
     for c, s in zip(problem.conditions, stated, strict=True):
         pairs[c.striker] = s.pair
         depths.setdefault(c.striker, []).append(deepest(s) / s.pair.R)

@@ -140,8 +140,8 @@ class _Model:
     def of(cls, scene: Scene) -> _Model:
         trace = traced(scene, _ACCURACY, points=_TRACED)
         t, order = np.unique(trace.column("time_s"), return_index=True)
-        e, impact = trace.impact.restitution, trace.impact
-        leaving = e * scene.approach.speed
+        impact = trace.impact
+        leaving = impact.restitution * scene.approach.speed
         exact = {
             o.column: getattr(impact, o.simulated) for o in OBSERVABLES.values() if o.simulated
         }

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...core.arrays import Array
+from ...core.arrays import Array, Mask
 from ...recordings.rules import RULES as RECORDINGS
 
 Numbers = dict[str, float]
@@ -110,10 +110,9 @@ def _extremum(t: Array, y: Array) -> tuple[float, float]:
 def from_profile(profile: Mapping[str, Array]) -> Numbers:
     """Return the depth of a crater below the flat around it."""
     x, z = profile["x_m"], profile["z_m"]
-    line = _ground(x, z)
-    if line is None:
+    level, outer = _levelled(x, z)
+    if not outer.any():
         return {}
-    level = z - np.polyval(line, x)
     low = int(np.argmin(level))
     near = np.flatnonzero(level < 0.7 * level[low])
     if len(near) < RECORDINGS.trace_samples or level[low] >= 0.0:
@@ -121,19 +120,19 @@ def from_profile(profile: Mapping[str, Array]) -> Numbers:
     return {"permanent_depth_m": -_extremum(x[near], level[near])[1]}
 
 
-def _ground(x: Array, z: Array) -> Array | None:
-    """Line through the undisturbed surface: the outer fifths of the profile."""
+def _levelled(x: Array, z: Array) -> tuple[Array, Mask]:
+    """Height over the line through the undisturbed surface, and where that is: the outer fifths.
+
+    Nowhere where it has fewer than four points.
+    """
     span = float(np.ptp(x))
     outer = (x < x.min() + 0.2 * span) | (x > x.max() - 0.2 * span)
-    return np.asarray(np.polyfit(x[outer], z[outer], 1)) if outer.sum() >= 4 else None
+    if outer.sum() < 4:
+        return z, np.zeros_like(outer)
+    return z - np.polyval(np.polyfit(x[outer], z[outer], 1), x), outer
 
 
 def roughness(profile: Mapping[str, Array]) -> float:
     """Return the scatter of a profile's undisturbed surface about its line."""
-    x, z = profile["x_m"], profile["z_m"]
-    line = _ground(x, z)
-    if line is None:
-        return 0.0
-    span = float(np.ptp(x))
-    outer = (x < x.min() + 0.2 * span) | (x > x.max() - 0.2 * span)
-    return float(np.std((z - np.polyval(line, x))[outer]))
+    level, outer = _levelled(profile["x_m"], profile["z_m"])
+    return float(np.std(level[outer])) if outer.any() else 0.0

@@ -18,8 +18,6 @@ from ..comparison.problem import Problem
 from ..rules import RULES
 
 _NEAR = math.radians(4.0)  # of angles that are one condition
-BENCH = RULES.bench
-"""Loads of a bench press or a small testing machine [N]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,13 +37,13 @@ class Candidate:
 def presses_of(problem: Problem) -> list[Candidate]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found: list[Candidate] = []
-    bench = problem.bench.loads_N or BENCH
+    bench = problem.bench.loads_N or RULES.bench
     second = second_of(problem.rig)
     struck = "flat" if second is None else "second sphere"
     # a free sphere is not pressed
     if leaves_no_mark(problem) or (second is not None and second.free):
         return []
-    for name, trials in sorted(_by_striker(problem).items()):
+    for name, trials in by_striker(problem).items():
         c, scene = trials[0]
         table = strength_table(scene.law, scene.pair)
         depths = [deepest(s) for _, s in trials]
@@ -58,7 +56,9 @@ def presses_of(problem: Problem) -> list[Candidate]:
         if not ends[0] < bench[1] or not ends[1] > bench[0]:
             continue
         few = RULES.press_loads if high > RULES.press_wide * low else 2
-        loads = [_round(x) for x in np.geomspace(low if few > 2 else low / 2.0, high, few)]
+        # nobody sets a press finer than to two digits
+        first = low if few > 2 else low / 2.0
+        loads = [float(f"{x:.2g}") for x in np.geomspace(first, high, few)]
         found += [
             Candidate(
                 f"press {name} slowly on the same {struck}, each time on a fresh place, "
@@ -74,17 +74,13 @@ def leaves_no_mark(problem: Problem) -> bool:
     return problem.baseline in ("elastic", "measured-restitution")
 
 
-def _by_striker(problem: Problem) -> dict[str, list[tuple[Condition, Scene]]]:
+def by_striker(problem: Problem) -> dict[str, list[tuple[Condition, Scene]]]:
+    """Return the conditions of each striker, by name, with their scenes as stated."""
     stated = problem.scenes(np.zeros(problem.n_z))
     own: dict[str, list[tuple[Condition, Scene]]] = {}
     for c, scene in zip(problem.conditions, stated, strict=True):
         own.setdefault(c.striker, []).append((c, scene))
-    return own
-
-
-def strikers_scenes(problem: Problem) -> list[tuple[Condition, Scene]]:
-    """Return a condition of each striker with its scene as stated."""
-    return [trials[0] for _, trials in sorted(_by_striker(problem).items())]
+    return dict(sorted(own.items()))
 
 
 def at_load(c: Condition, scene: Scene, load: float) -> Condition:
@@ -92,11 +88,6 @@ def at_load(c: Condition, scene: Scene, load: float) -> Condition:
     speed = as_deep(scene.with_(approach=CREEP, press=Press(load)))
     upright = replace(c, angle=math.pi / 2.0, tangential=0.0, spin=0.0, after=-1)
     return replace(upright, speed=speed, press=Press(load))
-
-
-def _round(load: float) -> float:
-    """Two digits: nobody sets a press finer."""
-    return float(f"{load:.2g}")
 
 
 def candidates_of(problem: Problem) -> list[Candidate]:
@@ -111,7 +102,7 @@ def candidates_of(problem: Problem) -> list[Candidate]:
     places = np.geomspace(min(speeds), max(speeds), RULES.speeds_tried)
     fallen = any(c.around.from_height for c in problem.conditions)
     if not (fallen or problem.bench.speeds_m_s) and all(
-        max(c.speed for c in x) < RULES.same_condition * min(c.speed for c in x)
+        max(c.speed for c in x) < (1.0 + RULES.same_speed) * min(c.speed for c in x)
         for x in own.values()
     ):
         # each striker has one speed, and no height that could be another: a spring gives it
@@ -174,7 +165,7 @@ def _idle(problem: Problem, first: Mapping[str, Condition]) -> dict[str, Conditi
 
 def _alike(one: Condition, other: Condition) -> bool:
     """Whether a trial would repeat a condition."""
-    near = abs(math.log(one.speed / other.speed)) < math.log(RULES.same_condition)
+    near = abs(math.log(one.speed / other.speed)) < math.log(1.0 + RULES.same_speed)
     return near and abs(one.incidence - other.incidence) < _NEAR
 
 
@@ -218,6 +209,11 @@ def _built(
     A ball has to be smaller by as much again than the seat of radius `widest` [m] that it strikes.
     """
     where = f"at {c.speed:.2g} m/s{at_degrees(c)}"
+
+    def like(text: str, mark: str, numbers: Mapping[str, float]) -> Candidate:
+        built = replace(c, striker=f"{name} {mark} {ratio:g}")
+        return Candidate(f"build a {text}, {where}", built, numbers, name)
+
     mass, length, shank = striker["mass_kg"], striker["length_m"], striker["radius_m"]
     for ratio in (1.0 / RULES.build_ratio, RULES.build_ratio):
         radius = striker["tip_radius_m"] * ratio
@@ -228,15 +224,10 @@ def _built(
             m = mass * ratio**3
             ball = {**tip, "radius_m": radius, "mass_kg": m,
                     "inertia_kg_m2": solid_inertia(m, radius, 0.0)}  # fmt: skip
-            text = f"build a ball like {name} with a radius of {1e3 * radius:.3g} mm"
-            yield Candidate(
-                f"{text}, {where}", replace(c, striker=f"{name} x {ratio:g}"), ball, name
-            )
+            yield like(f"ball like {name} with a radius of {1e3 * radius:.3g} mm", "x", ball)
             continue
-        text = f"build a rod like {name} with a tip radius of {1e3 * radius:.3g} mm"
-        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} R x {ratio:g}"), tip, name)
+        yield like(f"rod like {name} with a tip radius of {1e3 * radius:.3g} mm", "R x", tip)
         m, long = mass * ratio, length * ratio
         rod = {**striker, "length_m": long, "mass_kg": m,
                "inertia_kg_m2": solid_inertia(m, shank, long)}  # fmt: skip
-        text = f"build a rod like {name} but {long:.3g} m long"
-        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} L x {ratio:g}"), rod, name)
+        yield like(f"rod like {name} but {long:.3g} m long", "L x", rod)

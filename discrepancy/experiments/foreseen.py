@@ -99,14 +99,14 @@ def _with_numbers(linear: Linear, problem: Problem, settled: Sequence[Settled]) 
         if one.key in place:
             row[place[one.key]] = problem.nuisances[place[one.key]].spread
     noise = block_diag(linear.noise, np.diag([s.std**2 for s in settled]))
-    form = np.pad(linear.form, ((0, len(settled)), (0, 0))) if linear.form.size else linear.form
+    form = np.pad(linear.form, ((0, len(settled)), (0, 0)))
     return replace(linear, noise=noise, J=np.vstack([linear.J, J]), form=form)
 
 
 def _first(linear: Linear, known: int) -> Linear:
     """The algebra of the first cells."""
-    form = linear.form[:known] if linear.form.size else linear.form
-    return replace(linear, noise=linear.noise[:known, :known], J=linear.J[:known], form=form)
+    noise, J, form = linear.noise[:known, :known], linear.J[:known], linear.form[:known]
+    return replace(linear, noise=noise, J=J, form=form)
 
 
 def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
@@ -169,6 +169,3 @@ def _log_density(y: Array, seen: Foreseen, lower: Array) -> Array:
     """Ln of the density of draws (k, n), but for a constant."""
     white = np.linalg.solve(lower, (y - seen.mean).T)
     return np.asarray(-0.5 * np.sum(white**2, axis=0) - np.sum(np.log(np.diag(lower))))
-
-
-__all__ = ["Foreseen", "Settled", "discrimination", "foreseen", "information"]

@@ -12,34 +12,23 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.inputs.rig_numbers import RigNumbers
 from ...core.observables import OBSERVABLES
 from ...dynamics.files.second import second_of
+from ...recordings.checks.press import LOAD_CLASS
 from ..choice.odds import Odds
-from ..comparison.conditions import LOAD_CLASS
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
 from ..unknowns.wrong_number import WrongNumber, is_wrong
-from .feasible import (
-    Candidate,
-    again,
-    at_degrees,
-    candidates_of,
-    leaves_no_mark,
-    presses_of,
-    to_build,
-)
+from . import feasible
 from .foreseen import Settled, discrimination, foreseen, information
-from .proposal import Proposal
-from .session import Option, Session, session_of, takes
+from .session import Option, Proposal, Session, session_of, takes
 
 _ELSEWHERE = ("build", "observable")  # what the rig has not had
 _BY = {"Sy_Pa": "hardness", "mass_kg": "weigh", "tip_radius_m": "calliper", "radius_m": "calliper"}
@@ -49,8 +38,6 @@ _SETTLE = {
 }  # fmt: skip
 _ERRORS = dict(RULES.settled)
 _PRESSED = dict(RULES.press_reading)
-"""What is read of a proposed press, with the relative error of one reading: a stylus or a
-microscope, and a microscope with a scale."""
 
 
 def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
@@ -59,26 +46,19 @@ def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
     return sorted(shared, key=lambda item: -item[1])[: RULES.rivals]
 
 
-class Proposed(NamedTuple):
-    """Every thing to do by itself, best first, and a session's worth together."""
-
-    each: list[Proposal]
-    session: Session
-
-
 def propose(
     simulator: Simulator, ranking: Ranking, odds: Odds, rng: np.random.Generator
-) -> Proposed:
-    """Return what to do next.
+) -> tuple[list[Proposal], Session]:
+    """Return every thing to do next by itself, best first, and a session's worth together.
 
     `ranking`, `odds`: the explanations and their probabilities.
     """
     rivals = rivals_of(ranking, odds)
     if len(rivals) < 2:
-        return Proposed([], Session())
-    found, session = _worth_of_each(simulator, rivals, _options(simulator), rng)
+        return [], Session()
+    found, session = _worth_of_each(_options(simulator), rivals, rng)
     if not session.goes_on:
-        found += _worth_of_each(simulator, rivals, _bodies(simulator), rng)[0]
+        found += _worth_of_each(_bodies(simulator), rivals, rng)[0]
         worth = sorted((p for p in found if p.kind in _ELSEWHERE), key=lambda p: -p.information)
         elsewhere = tuple(p for p in worth[:1] if p.information >= RULES.worth)
         session = replace(session, elsewhere=elsewhere)
@@ -88,19 +68,19 @@ def propose(
         sharper = _sharper(simulator.problem, best)
         if 1.0 - rivals[0][1] < RULES.rival:
             # nothing left to tell apart: what is left is to know the numbers better
-            return Proposed([*sharper, *found], session)
+            return [*sharper, *found], session
         found += sharper
-    return Proposed(found, session)
+    return found, session
 
 
 def _worth_of_each(
-    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], plan: _Plan,
-    rng: np.random.Generator,
-) -> tuple[list[Proposal], Session]:  # fmt: skip
+    plan: _Plan, rivals: Sequence[tuple[Fit, float]], rng: np.random.Generator
+) -> tuple[list[Proposal], Session]:
     """What each thing of a plan would tell, and the best of them together."""
     if not plan.options:
         return [], Session()
-    seen = [foreseen(simulator, plan.wider, f, rng, plan.settled) for f, _ in rivals]
+    wider = plan.wider
+    seen = [foreseen(plan.simulator, wider, f, rng, plan.settled) for f, _ in rivals]
     weight = [p for _, p in rivals]
     found, within = [], []
     for cells, proposal in plan.options:
@@ -112,11 +92,9 @@ def _worth_of_each(
         found.append(worth)
         if proposal.kind not in _ELSEWHERE:
             within.append(Option(cells, worth))
-    known = len(simulator.problem.cells)
-    reads = [*plan.wider.cells.observable[known:], *(one.key for one in plan.settled)]
-    session = session_of(
-        simulator.problem.bench, within, seen, {f.name: p for f, p in rivals}, reads
-    )
+    read = wider.cells.observable[len(plan.problem.cells) :]
+    reads = [*read, *(one.key for one in plan.settled)]
+    session = session_of(wider.bench, within, seen, {f.name: p for f, p in rivals}, reads)
     # of what else could be measured, the condition of the set where it would tell most
     best: dict[str, Proposal] = {}
     for p in found:
@@ -126,21 +104,14 @@ def _worth_of_each(
     return list(best.values()), session
 
 
-class _Plan(NamedTuple):
-    """What could be done, the problem with all its cells, and the numbers behind them."""
-
-    options: list[Option]
-    wider: Problem
-    settled: tuple[Settled, ...]
-
-
-class _New:
-    """Cells that are not measured yet, behind those of a problem, and what reads them."""
+class _Plan:
+    """What could be done, its cells behind those of a problem, and the numbers behind them."""
 
     def __init__(self, simulator: Simulator) -> None:
         self.simulator, self.problem = simulator, simulator.problem
         bench = self.problem.bench
         self.options: list[Option] = []
+        self.settled: list[Settled] = []
         self.conditions = list(self.problem.conditions)
         self.cells: list[tuple[int, str, float]] = []
         self.rig, self.laws = self.problem.rig, dict(self.problem.laws)
@@ -156,65 +127,68 @@ class _New:
         self.cells += [(condition, name, std) for name, std in noise.items()]
         self.options.append(Option(np.arange(first, len(self.cells)), told))
 
-    def blow(self, c: Candidate, minutes: float) -> None:
+    def blow(self, c: feasible.Candidate, minutes: float) -> None:
         """Add a trial that was not made yet."""
         name = c.condition.striker
         if c.built:
             self.rig = self.rig.with_striker(name, c.like, c.built)
         self.laws[name] = self.problem.laws[c.like or name]
         self.conditions.append(c.condition)
-        told = replace(_proposal(c, self.measured, self.rig, self.repeats), minutes=minutes)
-        self.add(len(self.conditions) - 1, self.noise, told)
+        self.add(len(self.conditions) - 1, self.noise, self.told(c, minutes))
 
-    def plan(self, settled: tuple[Settled, ...] = ()) -> _Plan:
-        """Return the problem with all of them."""
-        cells = self.problem.cells
-        condition, observable, std = zip(*self.cells, strict=True) if self.cells else ((), (), ())
-        behind = replace(
-            cells, condition=np.append(cells.condition, condition).astype(np.intp),
-            observable=(*cells.observable, *observable),
-            value=np.append(cells.value, np.zeros(len(std))), std=np.append(cells.std, std),
-            count=np.append(cells.count, np.ones(len(std))).astype(np.intp),
-        )  # fmt: skip
+    def told(self, c: feasible.Candidate, minutes: float) -> Proposal:
+        """Return a trial that reads what the set has read."""
+        striker = self.rig.striker(c.condition.striker)
+        trial: dict[str, str | float] = {
+            "striker": c.condition.striker, "speed_m_s": c.condition.speed,
+            "angle_deg": math.degrees(c.condition.incidence), "mass_kg": striker["mass_kg"],
+            "tip_radius_m": striker["tip_radius_m"], "repeats": float(self.repeats),
+        }  # fmt: skip
+        text = f"{c.change}, measuring {', '.join(OBSERVABLES[n].label for n in self.measured)}"
+        kind = "build" if c.built else "trial"
+        return Proposal(text, 0.0, kind, trial=trial, minutes=minutes)
+
+    @property
+    def wider(self) -> Problem:
+        """The problem with all cells."""
         wide = replace(
-            self.problem, conditions=tuple(self.conditions), cells=behind, rig=self.rig,
-            laws=self.laws,
+            self.problem, conditions=tuple(self.conditions), rig=self.rig, laws=self.laws,
+            cells=self.problem.cells.and_new(self.cells),
         )  # fmt: skip
-        return _Plan(self.options, wide.with_error(self.problem.error), settled)
+        return wide.with_error(self.problem.error)
 
 
 def _options(simulator: Simulator) -> _Plan:
     """Return what the rig can do, and what it could read with another instrument."""
-    problem, new = simulator.problem, _New(simulator)
-    for c in candidates_of(problem):
+    problem, new = simulator.problem, _Plan(simulator)
+    for c in feasible.candidates_of(problem):
         new.blow(c, new.strike)
     # what repeats share does not average away: half of one reading's noise
     worse = math.sqrt(1.0 + 0.5 * new.repeats)
-    for k in again(problem):
+    for k in feasible.again(problem):
         one = problem.conditions[k]
-        c = Candidate(f"{one.striker} {one.told}{at_degrees(one)} once more", one)
-        told = replace(_proposal(c, new.measured, new.rig, new.repeats), minutes=new.strike)
-        new.add(k, {n: worse * x for n, x in new.noise.items()}, told)
+        c = feasible.Candidate(f"{one.striker} {one.told}{feasible.at_degrees(one)} once more", one)
+        new.add(k, {n: worse * x for n, x in new.noise.items()}, new.told(c, new.strike))
     _add_instruments(new)
     if not math.isnan(each := takes(problem.bench, "press")):
-        for c in presses_of(problem):
+        for c in feasible.presses_of(problem):
             new.conditions.append(c.condition)
-            told = replace(_pressing(c), minutes=each * RULES.press_each)
             read = {name: _press_noise(problem, name) for name in _PRESSED}
-            new.add(len(new.conditions) - 1, read, told)
-    return new.plan(_settling(problem, len(new.cells), new.options))
+            new.add(len(new.conditions) - 1, read, _pressing(c, each * RULES.press_each))
+    _settling(new)
+    return new
 
 
 def _bodies(simulator: Simulator) -> _Plan:
     """Return what could be built."""
-    new = _New(simulator)
+    new = _Plan(simulator)
     minutes = new.strike + takes(new.problem.bench, "build")
-    for c in () if math.isnan(minutes) else to_build(new.problem):
+    for c in () if math.isnan(minutes) else feasible.to_build(new.problem):
         new.blow(c, minutes)
-    return new.plan()
+    return new
 
 
-def _add_instruments(new: _New) -> None:
+def _add_instruments(new: _Plan) -> None:
     """What else could be read, where it can be had, of each condition that is struck again."""
     minutes = new.strike + takes(new.problem.bench, "instrument")
     for name in () if math.isnan(minutes) else _not_measured(new.problem):
@@ -227,11 +201,11 @@ def _add_instruments(new: _New) -> None:
             new.add(k, {name: noise}, told)
 
 
-def _settling(problem: Problem, first: int, options: list[Option]) -> tuple[Settled, ...]:
-    """Numbers of the sheet that can be measured again; `first` is the place of the first."""
+def _settling(new: _Plan) -> None:
+    """Numbers of the sheet that can be measured again, behind all cells."""
+    problem = new.problem
     keys = [n.name for n in problem.nuisances]
     keys += [one.key for one in problem.wrong_numbers if type(one) is WrongNumber]
-    found: list[Settled] = []
     for key in dict.fromkeys(keys):
         body, _, word = key.rpartition(".")
         kind = _BY.get(word, "")
@@ -242,32 +216,18 @@ def _settling(problem: Problem, first: int, options: list[Option]) -> tuple[Sett
             of = "the second sphere"
         text = _SETTLE[kind].format(of)
         told = Proposal(text, 0.0, kind, trial={"key": key}, minutes=minutes)
-        options.append(Option(np.array([first + len(found)]), told))
-        found.append(Settled(key, _ERRORS[kind]))
-    return tuple(found)
+        new.options.append(Option(np.array([len(new.cells) + len(new.settled)]), told))
+        new.settled.append(Settled(key, _ERRORS[kind]))
 
 
-def _proposal(c: Candidate, measured: list[str], rig: RigNumbers, repeats: int) -> Proposal:
-    striker = rig.striker(c.condition.striker)
-    trial: dict[str, str | float] = {
-        "striker": c.condition.striker, "speed_m_s": c.condition.speed,
-        "angle_deg": math.degrees(c.condition.incidence), "mass_kg": striker["mass_kg"],
-        "tip_radius_m": striker["tip_radius_m"], "repeats": float(repeats),
-    }  # fmt: skip
-    words = ", ".join(OBSERVABLES[n].label for n in measured)
-    return Proposal(
-        f"{c.change}, measuring {words}", 0.0, "build" if c.built else "trial", trial=trial
-    )
-
-
-def _pressing(c: Candidate) -> Proposal:
+def _pressing(c: feasible.Candidate, minutes: float) -> Proposal:
     assert c.condition.press is not None
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "load_N": c.condition.press.load,
         "repeats": float(RULES.press_each),
     }  # fmt: skip
     words = " and ".join(OBSERVABLES[n].label for n in _PRESSED)
-    return Proposal(f"{c.change}, measuring {words}", 0.0, "press", trial=trial)
+    return Proposal(f"{c.change}, measuring {words}", 0.0, "press", trial=trial, minutes=minutes)
 
 
 def _press_noise(problem: Problem, name: str) -> float:
@@ -286,7 +246,7 @@ def _not_measured(problem: Problem) -> list[str]:
         if name not in problem.cells.observable
         and row.usual_noise
         and (row.phase != "sliding" or slides)
-        and not (row.instrument == "surface" and leaves_no_mark(problem))
+        and not (row.instrument == "surface" and feasible.leaves_no_mark(problem))
     ]
 
 

@@ -1,4 +1,4 @@
-"""One session's worth of trials, chosen together: what each adds to the others, by the minute.
+"""What is proposed, and one session's worth of it: what each adds to the others, by the minute.
 
 Greedy by gain over minutes, or the best one by itself where that is more (S. Khuller, A. Moss and
 J. Naor, Inf. Process. Lett. 70 (1999) 39).
@@ -15,12 +15,44 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Indices
+from ...core.unstated import unstated_equal
 from ...recordings.bench import Bench
 from ..rules import RULES
 from .foreseen import Foreseen, discrimination, information
-from .proposal import Proposal
 
 _TAKES = dict(RULES.minutes)
+
+
+@unstated_equal
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What to do, how well it would discriminate, and what it would do to the interval.
+
+    - `expected_discrimination`: D averaged over the rivals; 0 where there are none.
+    - `kind`: `trial`, `press`, `build`, `noise`, `observable`, `hardness`, `weigh`, `calliper` or
+      `none`.
+    - `information`: nats by which the entropy of which rival is true is expected to fall.
+    - `interval`: width of the leading parameter's interval over that of today; nan where not worked
+      out.
+    - `trial`: striker, speed [m/s] and angle [degrees] of a trial, mass [kg] and tip radius [m],
+      repeats; of a press its load [N]; of a number of the sheet its key.
+    - `observable`: what to measure as well, of a proposal of that kind.
+    - `minutes`: how long it takes; nan where there is nothing to do.
+    """
+
+    change: str
+    expected_discrimination: float
+    kind: str = "trial"
+    interval: float = math.nan
+    trial: Mapping[str, str | float] = field(default_factory=dict)
+    information: float = 0.0
+    observable: str = ""
+    minutes: float = math.nan
+
+    @property
+    def per_hour(self) -> float:
+        """Information over the hours it takes [nat/h]; 0 where there is nothing to do."""
+        return 60.0 * self.information / self.minutes if self.minutes > 0.0 else 0.0
 
 
 class Option(NamedTuple):
@@ -157,6 +189,3 @@ def session_of(
         information([s.of(cells(some)) for s in seen], weight.tolist()), entropy,
         (Telling(step, reads[i], expected),),
     )  # fmt: skip
-
-
-__all__ = ["Option", "Telling", "Session", "chosen", "session_of", "takes"]

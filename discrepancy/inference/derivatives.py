@@ -15,11 +15,8 @@ from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
 from .linear import Linear, Sizes
 
-FORMS = Sizes(
-    tuple(math.exp(k * math.sqrt(3.0) * RULES.form_spread) for k in (-1, 0, 1)),
-    (1 / 6, 2 / 3, 1 / 6),
-)
-"""Of the error of a form: the three points of Gauss and Hermite."""
+FORMS = Sizes.normal(RULES.form_spread)
+"""Of the error of a form."""
 
 
 def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
@@ -87,11 +84,10 @@ def derivatives(
     noise = measured_covariance(problem, by_speed, by_angle)
     if not mechanisms:
         return here, Linear(noise, J)
+    without = [[o for o in mechanisms if o is not m] for m in mechanisms]
+    effects = [here - simulator.predict(rest, [Point(z, values)])[0] for rest in without]
     form = np.hstack([
-        form_error(problem, effect, m.form)
-        for m, effect in zip(
-            mechanisms, _effects(simulator, mechanisms, values, z, here), strict=True
-        )
+        form_error(problem, effect, m.form) for m, effect in zip(mechanisms, effects, strict=True)
     ])  # fmt: skip
     # of known size, other than what the forms may be off
     noise = noise + sum(x @ x.T for x in _scaled(simulator, mechanisms, values, z, here))
@@ -104,14 +100,6 @@ def derivatives(
         jump = 0.5 * np.max(np.abs(below + above - 2.0 * here), axis=0)
         form = np.hstack([form, np.diag(jump)])
     return here, Linear(noise, J, _condensed(form))
-
-
-def _effects(
-    simulator: Simulator, mechanisms: Sequence[Mechanism], values: Constants, z: Array, here: Array
-) -> list[Array]:
-    """Change of the cells (m,) by each mechanism, in the presence of the others."""
-    without = [[o for o in mechanisms if o is not m] for m in mechanisms]
-    return [here - simulator.predict(rest, [Point(z, values)])[0] for rest in without]
 
 
 def _scaled(

@@ -2,7 +2,8 @@
 
 Gauss-Newton in the nuisances and the law's error, a simulated grid in the mechanisms' parameters;
 the derivatives are taken with a step of 0.3 prior standard deviations, on which the slight
-roughness of an event-driven simulation does not matter.
+roughness of an event-driven simulation does not matter. What the data know better than the grid is
+fitted again on a grid about its most probable place.
 """
 
 from __future__ import annotations
@@ -35,14 +36,13 @@ class Fit:
     - `prediction`: (m,) cells at `place` and `z`.
     - `log_evidence`: ln of the mean likelihood over the priors.
     - `chi2`: r^T Sigma^-1 r at `place`.
-    - `linear`: algebra at the expansion point, with the likeliest size of the model's error.
     - `residual`: (m,) data minus prediction at the prior mean, with the mechanism at `place`.
     - `here`: (m,) prediction at the expansion point.
     - `log_likelihood`: (k,) over the refined grid.
     - `residuals`: (k, m) as `residual`, over the refined grid.
     - `expanded`: (n_z,) unknowns at the expansion point.
-    - `mixture`: the algebra with the model's error of every size; `linear` is that of the
-      likeliest.
+    - `mixture`, `linear`: algebra at the expansion point with the model's error of every size,
+      and that of the likeliest.
     """
 
     mechanisms: tuple[Mechanism, ...]
@@ -119,7 +119,6 @@ def fit_anchored(
     *,
     start: Fit,
     place: Array,
-    rounds: int = 2,
 ) -> Fit:
     """Fit an explanation of several mechanisms whose effects are known one by one, as `fit` does.
 
@@ -128,7 +127,7 @@ def fit_anchored(
     """
     grid = grid_of(simulator.problem, mechanisms)
     z, place = start.z.copy(), grid.places()[grid.index(place)]
-    for _ in range(rounds):
+    for _ in range(2):
         found = expand(simulator, mechanisms, grid, z, place, effect(z, place))
         z, settled = moved_towards(found, z, place)
         place = found.place
@@ -168,8 +167,7 @@ def tried_steps(
     tried = [(z, place), *((z + t * (whole - z), found.place) for t in RULES.fit_parts)]
     points = [Point(z, found.grid.values(place)) for z, place in tried]
     r = simulator.problem.cells.value - simulator.predict(found.mechanisms, points)
-    prior = found.linear.prior if found.linear.prior.size else np.ones(len(z))
-    away = np.array([np.sum((z / prior) ** 2) for z, _ in tried])
+    away = np.array([np.sum((z / found.linear.prior) ** 2) for z, _ in tried])
     badness = np.sum(r * np.linalg.solve(found.linear.measured, r.T).T, axis=1) + away
     best = int(np.argmin(badness))
     return *tried[best], bool(badness[0] - badness[best] < RULES.fit_little)
@@ -219,3 +217,50 @@ def expand(
         float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], here, log_likelihood, r, z,
         mixture,
     )  # fmt: skip
+
+
+def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
+    """Fit again on a grid about the most probable place, if the data know it better than a grid.
+
+    A grid over the whole prior has few nodes; where the data pin a parameter down to a part of
+    their distance, neither the simulation between them nor the interval can be trusted. The window
+    follows the most probable place, and shrinks to a few standard deviations about it.
+
+    `fitted`: a fit with mechanisms; `rounds`: largest number of windows, at least 1.
+    """
+    grid, z, place = fitted.grid, fitted.z, fitted.place
+    spread = _spread(fitted)
+    share = np.array([1.0 / len(f) for f in grid.fine])
+    node = np.array([min(1.0 / (len(c) - 1), RULES.node_apart) for c in grid.coarse])
+    jumps = any(m.jumps for m in fitted.mechanisms)
+    if np.all(spread > np.maximum(RULES.resolved * share, node)) and not jumps:
+        return fitted
+    half = np.maximum(RULES.window * spread, 2.5 * share)
+    best = None
+    for _ in range(max(rounds, 1)):
+        low, high = np.maximum(place - half, 0.0), np.minimum(place + half, 1.0)
+        window = tuple(zip(low.tolist(), high.tolist(), strict=True))
+        local = Grid(grid.axes, window)
+        found = expand(simulator, fitted.mechanisms, local, z, place, None)
+        # where outcomes bend or jump, a step may fall off the branch that the data are on
+        if best is None or found.log_evidence > best.log_evidence:
+            best = found
+        wide = high - low
+        outward = (
+            ((found.place < low + 0.1 * wide) & (low > 0.0))
+            | ((found.place > high - 0.1 * wide) & (high < 1.0))
+        )  # fmt: skip
+        z, place, settled = tried_steps(simulator, found, z, place)
+        narrow = RULES.window * _spread(found)
+        if not outward.any() and np.all(narrow > 0.3 * half) and settled:
+            break
+        half = np.where(outward, 1.6 * half, np.clip(narrow, 0.1 * half, half))
+    assert best is not None
+    return best
+
+
+def _spread(fitted: Fit) -> Array:
+    """Posterior standard deviation of each parameter, as a share of its prior's range."""
+    places, weight = fitted.grid.places(), fitted.weight
+    away = places - weight @ places
+    return np.asarray(np.sqrt(weight @ away**2))

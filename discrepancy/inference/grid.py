@@ -107,15 +107,11 @@ class Grid:
         places = [int(np.argmin(np.abs(f - x))) for f, x in zip(self.fine, place, strict=True)]
         return int(np.ravel_multi_index(places, [len(f) for f in self.fine]))
 
-    def refine(self, responses: Array) -> Array:
-        """Interpolate responses (nodes, m) to the refined grid (k, m), by cubic splines."""
-        return self.onto(responses, self.fine)
-
-    def onto(self, responses: Array, axes: Sequence[Array]) -> Array:
-        """Interpolate responses (nodes, m) to the tensor grid of `axes`, shape (k, m)."""
+    def refine(self, responses: Array, axes: Sequence[Array] = ()) -> Array:
+        """Interpolate responses (nodes, m) to the refined grid, or to that of `axes`, (k, m)."""
         m = responses.shape[-1]
         table = responses.reshape(*[len(c) for c in self.coarse], m)
-        return along_all(self.coarse, axes, table).reshape(-1, m)
+        return along_all(self.coarse, axes or self.fine, table).reshape(-1, m)
 
 
 def along_all(coarse: Sequence[Array], fine: Sequence[Array], table: Array) -> Array:
@@ -139,7 +135,7 @@ def posterior(log_likelihood: Array) -> tuple[float, Array]:
     return total - math.log(len(log_likelihood)), np.exp(log_likelihood - total)
 
 
-def interval(edges: Array, weight: Array, level: float = 0.90) -> tuple[float, float, float]:
+def interval(edges: Array, weight: Array, level: float) -> tuple[float, float, float]:
     """Return median and bounds of the central interval of a density that is flat within cells.
 
     `edges`: (n + 1,) of the cells; `weight`: (n,) in each of them; `level`: of the interval.

@@ -29,8 +29,8 @@ class Linear:
 
     - `noise`: (m, m) covariance of the cells.
     - `J`: (m, n_z) derivatives by the unknowns.
-    - `form`: (m, c) components of the error of the mechanism's form; none for the baseline.
-    - `prior`: (n_z,) prior standard deviations of the unknowns; 1 each where empty.
+    - `form`: (m, c) components of the error of the mechanism's form; none where left out.
+    - `prior`: (n_z,) prior standard deviations of the unknowns; 1 each where left out.
     """
 
     noise: Array
@@ -38,15 +38,22 @@ class Linear:
     form: Array = field(default_factory=lambda: np.zeros((0, 0)))
     prior: Array = field(default_factory=lambda: np.zeros(0))
 
+    def __post_init__(self) -> None:
+        m, n = self.J.shape
+        if not self.form.size:
+            object.__setattr__(self, "form", np.zeros((m, 0)))
+        if not self.prior.size:
+            object.__setattr__(self, "prior", np.ones(n))
+
     @cached_property
     def scaled(self) -> Array:
         """(m, n_z) derivatives by the unknowns in prior standard deviations."""
-        return self.J * self.prior if self.prior.size else self.J
+        return self.J * self.prior
 
     @cached_property
     def measured(self) -> Array:
         """(m, m) covariance of what neither nuisances nor the law's error can follow."""
-        return self.noise + self.form @ self.form.T if self.form.size else self.noise
+        return self.noise + self.form @ self.form.T
 
     @cached_property
     def total(self) -> Array:
@@ -79,8 +86,7 @@ class Linear:
 
     def unknowns(self, r: Array) -> tuple[Array, Array]:
         """Return posterior mean (n_z,) and covariance (n_z, n_z) of the unknowns given r."""
-        prior = self.prior if self.prior.size else np.ones(self.J.shape[1])
-        half = self.whitening.T @ self.scaled
+        half, prior = self.whitening.T @ self.scaled, self.prior
         mean = prior * (half.T @ self.white(r))
         return np.asarray(mean), (np.eye(len(prior)) - half.T @ half) * np.outer(prior, prior)
 
@@ -94,6 +100,12 @@ class Sizes(NamedTuple):
 
     factors: Sequence[float]
     weights: Sequence[float]
+
+    @classmethod
+    def normal(cls, spread: float) -> Sizes:
+        """Return a normal logarithm of such a spread, at the three points of Gauss and Hermite."""
+        at = tuple(math.exp(k * math.sqrt(3.0) * spread) for k in (-1, 0, 1))
+        return cls(at, (1 / 6, 2 / 3, 1 / 6))
 
 
 ONE = Sizes((1.0,), (1.0,))
@@ -154,8 +166,8 @@ class Mixture:
         cov = np.tensordot(weight, np.stack(covs), 1) + (weight[:, None] * away).T @ away
         return np.asarray(mean), np.asarray(cov)
 
-    def mean_likelihood(self, r: Array, effect: Array) -> Array:
-        """Return ln of the mean likelihood of r (n, m) over effects (k, m), shape (n,)."""
+    def gain(self, r: Array, effect: Array) -> Array:
+        """Return ln of r's (n, m) mean likelihood over effects (k, m), less that of none, (n,)."""
         found = []
         for weight, part in zip(self.log_weight, self.parts, strict=True):
             w, e = part.white(r), part.white(effect)
@@ -163,8 +175,4 @@ class Mixture:
             top = ratio.max(axis=1)
             mean = top + np.log(np.mean(np.exp(ratio - top[:, None]), axis=1))
             found.append(weight + mean - 0.5 * (np.sum(w**2, axis=1) + part.log_det))
-        return np.asarray(logsumexp(np.stack(found), axis=0))
-
-    def gain(self, r: Array, effect: Array) -> Array:
-        """Return ln of the mean likelihood over effects less that of no effect, shape (n,)."""
-        return np.asarray(self.mean_likelihood(r, effect) - self.log_likelihood(r))
+        return np.asarray(logsumexp(np.stack(found), axis=0) - self.log_likelihood(r))

@@ -18,8 +18,6 @@ from ..comparison.problem import Problem
 from ..rules import RULES
 from .fit import Fit
 
-WIDER = RULES.outlier_wider
-
 
 def outlying(problem: Problem, judge: Fit) -> Mask:
     """Return the mask (m,) of the values that an explanation cannot hold one by one.
@@ -34,7 +32,7 @@ def outlying(problem: Problem, judge: Fit) -> Mask:
     most = max(int(RULES.outlier_share * len(residual)), 1)
 
     def inverse_without(some: Mask) -> Array:
-        return np.linalg.inv(total + np.diag(np.where(some, WIDER**2 * own, 0.0)))
+        return np.linalg.inv(total + np.diag(np.where(some, RULES.outlier_wider**2 * own, 0.0)))
 
     while found.sum() < most:
         inverse = inverse_without(found)
@@ -78,7 +76,7 @@ def _neighbours(problem: Problem) -> list[Indices]:
 def without_weight(problem: Problem, outliers: Mask) -> Problem:
     """Return the problem with the outliers' standard errors made so large that they say nothing."""
     cells = problem.cells
-    std = np.where(outliers, WIDER * cells.std, cells.std)
+    std = np.where(outliers, RULES.outlier_wider * cells.std, cells.std)
     places = []
     for i in np.flatnonzero(outliers):
         c = problem.conditions[cells.condition[i]]
@@ -88,6 +86,3 @@ def without_weight(problem: Problem, outliers: Mask) -> Problem:
         problem, cells=replace(cells, std=std), notes=(*problem.notes, note),
         weightless=frozenset(np.flatnonzero(outliers).tolist()),
     )  # fmt: skip
-
-
-__all__ = ["outlying", "without_weight"]

@@ -15,28 +15,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ...core.arrays import Array, Indices
+from ..baseline.laws import Progress
 from ..comparison.forward import Point, Simulator
-from ..rank import Progress
 from ..rules import RULES
 from .fit import Fit
 
 # limit: particles of a sampled evidence, and moves of each at each temperature [-]; time
 _PARTICLES, _MOVES = 160, 3
-
-
-@dataclass(eq=False)
-class _Swarm:
-    """Particles: index into the grid, offset of z from its mean there, and ln p/q."""
-
-    index: Indices
-    offset: Array
-    log_ratio: Array
 
 
 def confirm_evidence(
@@ -57,8 +47,8 @@ def confirm_evidence(
 def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator) -> float:
     """Return ln evidence of one explanation by annealing from its screened posterior."""
     linear, cells = fitted.linear, simulator.problem.cells
+    prior = linear.prior
     solved = linear.solve(fitted.residuals.T)
-    prior = linear.prior if linear.prior.size else np.ones(linear.J.shape[1])
     means = (linear.J.T @ solved).T * prior**2
     _, cov = linear.unknowns(fitted.residual)
     lower = np.linalg.cholesky(cov + 1e-10 * np.eye(len(cov)))
@@ -77,35 +67,32 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
         log_q = np.log(fitted.weight[index] * len(places)) - 0.5 * np.sum(offset**2, axis=1)
         return np.asarray(np.nan_to_num(log_p - log_q + constant, nan=-1e9))
 
+    # of every particle: index into the grid, offset of z from its mean there, and ln p/q
     n = len(lower)
     index = rng.choice(len(places), size=_PARTICLES, p=fitted.weight)
     offset = rng.standard_normal((_PARTICLES, n))
-    swarm = _Swarm(index, offset, log_ratio(index, offset))
+    ratio = log_ratio(index, offset)
     done, total = 0.0, 0.0
     while done < 1.0:
-        step = _next_step(swarm.log_ratio, 1.0 - done)
-        weight = step * swarm.log_ratio
+        step = _next_step(ratio, 1.0 - done)
+        weight = step * ratio
         total += float(logsumexp(weight)) - math.log(_PARTICLES)
         done += step
         chosen = _resample(weight, rng)
-        swarm = _Swarm(swarm.index[chosen], swarm.offset[chosen], swarm.log_ratio[chosen])
+        index, offset, ratio = index[chosen], offset[chosen], ratio[chosen]
         if done >= 1.0:
             break
         for move in range(_MOVES):
-            fresh = move == 0 and len(places) > 1
-            index, offset = swarm.index, swarm.offset
-            if fresh:
-                index = rng.choice(len(places), size=_PARTICLES, p=fitted.weight)
+            there, aside = index, offset
+            if move == 0 and len(places) > 1:
+                there = rng.choice(len(places), size=_PARTICLES, p=fitted.weight)
             else:
                 kick = rng.standard_normal((_PARTICLES, n))
-                offset = math.sqrt(1.0 - RULES.sample_step**2) * offset + RULES.sample_step * kick
-            ratio = log_ratio(index, offset)
-            take = np.log(rng.random(_PARTICLES)) < done * (ratio - swarm.log_ratio)
-            swarm = _Swarm(
-                np.where(take, index, swarm.index),
-                np.where(take[:, None], offset, swarm.offset),
-                np.where(take, ratio, swarm.log_ratio),
-            )
+                aside = math.sqrt(1.0 - RULES.sample_step**2) * offset + RULES.sample_step * kick
+            other = log_ratio(there, aside)
+            take = np.log(rng.random(_PARTICLES)) < done * (other - ratio)
+            index, ratio = np.where(take, there, index), np.where(take, other, ratio)
+            offset = np.where(take[:, None], aside, offset)
     # sampled with the likeliest size of the law's error: the others as the algebra has them
     one_size = float(logsumexp(linear.log_likelihood(fitted.residuals)))
     return total + float(logsumexp(fitted.log_likelihood)) - one_size + fitted.grid.log_volume

@@ -78,8 +78,8 @@ def refined(
         return grid.refine(responses_at(simulator, mechanisms, grid, z))
     one, two = split(grid, mechanisms)
     n = len(one.axes)
-    first = one.onto(responses_at(simulator, mechanisms[:1], one, z), grid.fine[:n])
-    second = two.onto(responses_at(simulator, mechanisms[1:], two, z), grid.fine[n:])
+    first = one.refine(responses_at(simulator, mechanisms[:1], one, z), grid.fine[:n])
+    second = two.refine(responses_at(simulator, mechanisms[1:], two, z), grid.fine[n:])
     corners = [np.array(ends) for ends in grid.window]
     own = first[:, None, :] + second[None, :, :] - plain(simulator, z)
     fine = own.reshape(-1, own.shape[-1]) + mutual(simulator, mechanisms, grid, corners, z)

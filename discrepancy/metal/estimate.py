@@ -32,7 +32,6 @@ from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
 from ..correction import LEVEL
-from ..experiments.feasible import BENCH
 from ..inference.derivatives import form_error, measured_covariance
 from ..rules import RULES
 from ..unknowns.lawerror import SIZES
@@ -45,11 +44,6 @@ _METAL_ROUNDS = 10
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
 """What a blow or a press leaves to be measured."""
 RATE = dict(RULES.rate_priors)
-"""Priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise): C of Johnson
-and Cook gives rises of 0.1 to 0.4, Cowper and Symonds 0.6 to 1.9; what is kept is the range of
-strain-rate-hardening."""
-VAGUE = RULES.vague
-"""Standard deviation of ln stress, and of ln(1 + rise), from which a set does not identify it."""
 
 _KIND = {"dent_diameter_m": "radius"}  # of the law's errors, where it is not the crater's
 _FROZEN = 1e-9  # prior deviation of what the curve itself stands for
@@ -93,9 +87,7 @@ class Metal:
     def log_stress(self, strains: Sequence[float] | Array) -> tuple[Array, Array]:
         """Return ln stress [ln Pa], (k,), and its covariance (k, k) at plastic strains."""
         rows = weights(strains) @ self.map
-        return (
-            math.log(self.strength) + rows @ self.mean, rows @ self.covariance @ rows.T
-        )  # fmt: skip
+        return math.log(self.strength) + rows @ self.mean, rows @ self.covariance @ rows.T
 
     def stress_at(self, strain: float) -> tuple[float, float, float]:
         """Return the stress at a plastic strain and its 90 % interval [Pa]."""
@@ -138,15 +130,14 @@ def metal_of(recordings: RecordingSet) -> Metal:
                          key="target.law", allowed="elastic-plastic")  # fmt: skip
     problem = _of_marks(problem_of(replace(recordings, flows={})))
     known = len(problem.cells)
-    wider = with_marks(problem, BENCH)
+    wider = with_marks(problem, RULES.bench)
     fit = _Fit.of(wider, known)
     mean, covariance, J = fit.posterior()
-    body = _dented(problem)
+    body, stated = _dented(problem)
     strain, back = _marks(wider, fit, mean, J)
     pressed = np.array([problem.conditions[k].press is not None for k in problem.cells.condition])
     best = next_mark(wider, known, weights(TOLD) @ fit.map, covariance, J)
     table = recordings.setup.bodies[body]
-    stated = _strength(problem, body)
     source = "stated" if table.Sy_Pa is not None else "taken from the hardness, or assumed"
     return Metal(
         recordings.name, body, stated, mean, covariance, fit.map, fit.rated, int(pressed.sum()),
@@ -161,25 +152,16 @@ def _of_marks(problem: Problem) -> Problem:
     if not kept.any():
         raise InputError("no marks", source=problem.name, key="trials.csv",
                          allowed=f"one or more of {', '.join(MARKS)}")  # fmt: skip
-    c = problem.cells
-    cells = replace(
-        c, condition=c.condition[kept],
-        observable=tuple(n for n, here in zip(c.observable, kept, strict=True) if here),
-        value=c.value[kept], std=c.std[kept], count=c.count[kept],
-    )  # fmt: skip
     # a press that is proposed leaves a diameter, whatever was read before
-    return replace(problem, cells=cells, sees_dents=True).with_error()
+    return replace(problem, cells=problem.cells.take(kept), sees_dents=True).with_error()
 
 
-def _dented(problem: Problem) -> str:
-    """Key of the body that yields first."""
+def _dented(problem: Problem) -> tuple[str, float]:
+    """Key of the body that yields first, and its strength as stated [Pa]."""
     pair = problem.scenes(np.zeros(problem.n_z))[0].pair
-    return "target" if pair.weaker is pair.flat else f"strikers.{problem.conditions[0].striker}"
-
-
-def _strength(problem: Problem, body: str) -> float:
-    pair = problem.scenes(np.zeros(problem.n_z))[0].pair
-    return pair.flat.Sy if body == "target" else pair.sphere.Sy
+    if pair.weaker is pair.flat:
+        return "target", pair.flat.Sy
+    return f"strikers.{problem.conditions[0].striker}", pair.sphere.Sy
 
 
 def rate_prior(rises: Sequence[Rise]) -> Array:
@@ -223,7 +205,7 @@ class _Fit:
     def of(cls, problem: Problem, known: int) -> _Fit:
         nodes = np.log(STRAINS)
         n = len(nodes)
-        body = f"{_dented(problem)}.Sy_Pa"
+        body = f"{_dented(problem)[0]}.Sy_Pa"
         own = [m.spread for m in problem.nuisances if m.name == body]
         first = own[0] if own else SPECIMENS
         seen = {problem.cells.condition[i] for i in range(known)}
@@ -328,7 +310,7 @@ class _Fit:
 
     def _check_moved(self, J: Array) -> None:
         if not J[:, : 1 + len(STRAINS)].any():
-            body = _dented(self.problem)
+            body, _ = _dented(self.problem)
             raise InputError(
                 f"by the stated strengths {body} yields first, and no mark depends on its strength",
                 source=self.problem.name, key=f"{body}.Sy_Pa",

@@ -7,10 +7,10 @@ sinks in where another piles up, so that a depth under load says less of it than
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -48,8 +48,7 @@ class FlowCurveOfMarks(Mechanism):
         Parameter(name, "-", -2.0, 3.0, "linear", math.inf, "a node of the curve")
         for name in _NAMES
     )
-    direction: ClassVar[Mapping[str, int]] = {}
-    static: ClassVar[bool] = True
+    static = True
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Give the body that yields first the curve, and the contact its law."""
@@ -67,16 +66,10 @@ def _law_of(pair: Pair, logs: tuple[float, ...]) -> ContactLaw:
     curve = tabulated(p, plain.Sy * np.exp(weights(p) @ logs))
     body = plain.with_(Sy=curve.strength, flow=Flow(curve))
     metal = replace(pair, flat=body) if in_flat else replace(pair, sphere=body)
-    return remembering(
-        anchored(
-            _FITTED,
-            LAWS["hardening"],
-            at=metal,
-            stated=pair,
-            deepest=MODELS.law_last,
-            hardens=True,
-        )
+    law = anchored(
+        _FITTED, LAWS["hardening"], at=metal, stated=pair, deepest=MODELS.law_last, hardens=True
     )
+    return remembering(law)
 
 
 def weights(strains: Sequence[float] | Array) -> Array:

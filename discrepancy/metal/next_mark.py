@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ..comparison.problem import Problem
-from ..experiments.feasible import at_load, strikers_scenes
+from ..experiments.feasible import at_load, by_striker
 from ..rules import RULES
 
 # limit: presses that are tried with each striker [-]; time
@@ -17,7 +17,6 @@ _LOADS = 8
 
 # limit: plastic strains at which the stress is told [-]: of tension tests, to their usual end
 TOLD = (0.02, 0.05, 0.10)
-"""Plastic strains at which the stress is told."""
 _READ = dict(RULES.press_reading)
 
 
@@ -34,20 +33,12 @@ class NextMark:
 def with_marks(problem: Problem, bench: tuple[float, float]) -> Problem:
     """Return the problem with presses that could be made behind its own cells."""
     conditions, new = list(problem.conditions), []
-    for c, scene in strikers_scenes(problem):
+    for (c, scene), *_ in by_striker(problem).values():
         for load in np.geomspace(*bench, _LOADS):
             one = at_load(c, scene, float(f"{load:.2g}"))
-            new += [(len(conditions), name) for name in _READ]
+            new += [(len(conditions), name, std) for name, std in _READ.items()]
             conditions.append(one)
-    cells = problem.cells
-    more = replace(
-        cells, condition=np.append(cells.condition, [k for k, _ in new]).astype(np.intp),
-        observable=(*cells.observable, *(name for _, name in new)),
-        value=np.append(cells.value, np.zeros(len(new))),
-        std=np.append(cells.std, [_READ[name] for _, name in new]),
-        count=np.append(cells.count, np.ones(len(new))).astype(np.intp),
-    )  # fmt: skip
-    return replace(problem, conditions=tuple(conditions), cells=more)
+    return replace(problem, conditions=tuple(conditions), cells=problem.cells.and_new(new))
 
 
 def next_mark(

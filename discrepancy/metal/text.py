@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from ..correction import LEVEL
-from .estimate import VAGUE, Metal
+from ..rules import RULES
+from .estimate import Metal
 from .next_mark import TOLD
 
 
@@ -46,7 +47,7 @@ def lines(metal: Metal) -> Iterator[str]:
 
 def _doubt(metal: Metal, strain: float) -> str:
     low, high = metal.covered
-    if metal.spread_at(strain) > VAGUE:
+    if metal.spread_at(strain) > RULES.vague:
         return ": not identified by these marks"
     if not low <= strain <= high:
         return ": beyond the marks, by how metals harden"
@@ -59,7 +60,7 @@ def _rate(metal: Metal) -> Iterator[str]:
         return
     value, low, high = (100.0 * x for x in metal.rise)
     text = f"  rise at 1000 1/s: {value:.3g} % ({LEVEL:.0%}: {low:.3g} to {high:.3g})"
-    if math.log((100.0 + high) / (100.0 + low)) > 3.3 * VAGUE:
+    if math.log((100.0 + high) / (100.0 + low)) > 3.3 * RULES.vague:
         more = "" if metal.pressed else "; quasi-static presses of the same ball would tell it"
         text += f": not identified{more}"
     yield text

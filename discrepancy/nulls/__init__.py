@@ -4,9 +4,3 @@ They set the thresholds of a diagnosis: what the comparison answers when only th
 somewhat wrong. Nothing in this folder imports the project's laws, its integrator or its proof; the
 baseline's curve comes in as plain numbers, to which each law is levelled.
 """
-
-from __future__ import annotations
-
-from .ensemble import NullRig, discrepancies, scatter
-
-__all__ = ["NullRig", "discrepancies", "scatter"]

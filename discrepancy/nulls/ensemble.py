@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Array
-from .laws import NullReference, curve, draw
+from .laws import NullCurve, NullReference, curve, draw
 from .motion import NullBodies, collide
-from .press import press
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +56,24 @@ def discrepancies(
         for name, values in found.items():
             seen.setdefault(name, np.full(len(curves), np.nan))[rows] = values
     return {k: v.reshape(count, n) for k, v in seen.items()}
+
+
+def press(loads: Array, curves: Sequence[NullCurve]) -> dict[str, Array]:
+    """Return the observables of n presses, each of shape (n,).
+
+    `loads`: (n,) largest loads [N]; `curves`: the law of each contact, n of them.
+    """
+    x, crater, radius, back = np.empty((4, len(loads)))
+    for i, (load, c) in enumerate(zip(loads, curves, strict=True)):
+        rising = np.maximum.accumulate(c.log_force)
+        x[i] = np.interp(np.log(load), rising, c.log_depth)
+        crater[i], radius[i], back[i] = (
+            np.interp(x[i], c.log_depth, table) for table in (c.crater, c.radius, c.recovery)
+        )
+    return {
+        "permanent_depth_m": crater, "dent_diameter_m": 2.0 * radius, "press_depth_m": np.exp(x),
+        "recovered_depth_m": back, "peak_depth_m": np.exp(x),
+    }  # fmt: skip
 
 
 def scatter(rng: np.random.Generator, shape: tuple[int, ...]) -> Array:

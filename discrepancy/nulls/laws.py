@@ -52,9 +52,8 @@ class NullReference:
       elastic).
     - `depth`, `force`, `recovery`, `crater`, `radius`: (k,) at depths of a wide range [m, N, m, m,
       m].
+    - `lost`: (k,) share of the work that the baseline keeps: laws differ by a part of that.
     - `given_back`: share of the elastic work that returns, for bodies without a yield strength.
-    - `lost`: (k,) share of the work that the baseline keeps: laws differ by a part of that; by all
-      that they differ where it is not given.
     - `low`, `high`: depths between which the impacts of this contact move [m].
     """
 
@@ -66,8 +65,8 @@ class NullReference:
     recovery: Array
     crater: Array
     radius: Array
+    lost: Array
     given_back: float = 1.0
-    lost: Array | None = None
     low: float = 0.0
     high: float = math.inf
 
@@ -101,21 +100,15 @@ def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
     """Draw a law; `size` holds the standard deviations of the levels, and of the size of all."""
     kind = KINDS[int(rng.integers(len(KINDS)))]
     a, b, c = (float(x) for x in rng.random(3))
-    drawn = {
-        k: float(rng.normal(0.0, size.get(k, 0.0)))
-        for kind in ("force", "recovery", "crater", "radius")
-        for k in (kind, f"{kind} slope")
-    }
-    level, back, dent, wide = (
-        (drawn[k], drawn[f"{k} slope"]) for k in ("force", "recovery", "crater", "radius")
-    )
+    drawn = [
+        (rng.normal(0.0, size.get(k, 0.0)), rng.normal(0.0, size.get(f"{k} slope", 0.0)))
+        for k in ("force", "recovery", "crater", "radius")
+    ]
     times = math.exp(rng.normal(0.0, size.get("size", 0.0)))
-    stray = size.get("force shape", math.inf), size.get("recovery shape", math.inf)
-    return Draw(
-        kind, a, b, c, (times * level[0], times * level[1]), (times * back[0], times * back[1]),
-        float(rng.uniform(-0.1, 0.1)), (times * stray[0], times * stray[1]),
-        (times * dent[0], times * dent[1]), (times * wide[0], times * wide[1]),
-    )  # fmt: skip
+    level, back, dent, wide = ((times * x, times * slope) for x, slope in drawn)
+    stray = times * size.get("force shape", math.inf), times * size.get("recovery shape", math.inf)
+    power = float(rng.uniform(-0.1, 0.1))
+    return Draw(kind, a, b, c, level, back, power, stray, dent, wide)
 
 
 def curve(reference: NullReference, law: Draw) -> NullCurve:
@@ -126,8 +119,7 @@ def curve(reference: NullReference, law: Draw) -> NullCurve:
     known = np.log(reference.depth)
     base = np.interp(x, known, np.log(reference.force))
     recovery = np.exp(np.interp(x, known, np.log(reference.recovery)))
-    total = np.exp(x)
-    crater = np.interp(x, known, reference.crater / reference.depth) * total
+    crater = np.interp(x, known, reference.crater / reference.depth) * d
     radius = np.exp(np.interp(x, known, np.log(reference.radius)))
     inside = (x >= math.log(low)) & (x <= math.log(high))
     middle = 0.5 * (math.log(low) + math.log(high))
@@ -139,12 +131,10 @@ def curve(reference: NullReference, law: Draw) -> NullCurve:
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
     own = _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
     # where little is left, laws differ by a part of that, not by a part of the recovery
-    part = np.ones_like(d)
-    if reference.lost is not None:
-        kept = np.interp(x, known, reference.lost)
-        part = kept / max(float(np.sqrt(np.mean(kept[inside] ** 2))), 1e-3)
-    f = base + np.minimum(part, 2.0) * (f - base)
-    rec = recovery * np.exp(np.minimum(part, 2.0) * (own - np.log(recovery)))
+    kept = np.interp(x, known, reference.lost)
+    part = np.minimum(kept / max(float(np.sqrt(np.mean(kept[inside] ** 2))), 1e-3), 2.0)
+    f = base + part * (f - base)
+    rec = recovery * np.exp(part * (own - np.log(recovery)))
     rec = np.minimum(rec, 0.999 * d)
     # what does not recover stays; the crater's share of it is the reference's
     left = np.maximum(d - recovery, 1e-12)

@@ -60,16 +60,12 @@ class _Contacts:
     @classmethod
     def of(cls, curves: Sequence[NullCurve], given_back: Array) -> _Contacts:
         """Stack the tables of the curves."""
-        return cls(
-            np.array([c.log_depth[0] for c in curves]),
-            np.array([c.log_depth[1] - c.log_depth[0] for c in curves]),
-            np.stack([c.log_force for c in curves]),
-            np.stack([c.recovery for c in curves]),
-            np.stack([c.crater for c in curves]),
-            np.stack([c.radius for c in curves]),
-            np.array([c.power for c in curves]),
-            given_back,
+        force, recovery, crater, radius, power = (
+            np.array([getattr(c, key) for c in curves])
+            for key in ("log_force", "recovery", "crater", "radius", "power")
         )
+        first, second = np.array([c.log_depth[:2] for c in curves]).T
+        return cls(first, second - first, force, recovery, crater, radius, power, given_back)
 
     def look(self, table: Array, depth: Array) -> Array:
         """Return the values of a table (n, k) at the depths (n,)."""

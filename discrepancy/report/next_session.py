@@ -6,8 +6,7 @@ import math
 
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE
-from ..experiments.proposal import Proposal
-from ..experiments.session import Telling
+from ..experiments.session import Proposal, Telling
 from ..findings import Verdict
 from ..rules import RULES
 from .wording import counted, explanation, joined, number_name, percent, quantity
@@ -108,6 +107,3 @@ def change_lines(v: Verdict) -> list[str]:
     if not told:
         return [f"Session {after.batch:g} ({new}) changed no probability by a per cent."]
     return [f"What session {after.batch:g} ({new}) changed: {joined(told)}."]
-
-
-__all__ = ["change_lines", "next_lines"]

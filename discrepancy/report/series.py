@@ -12,7 +12,7 @@ from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..comparison.conditions import Condition
 from ..findings import Verdict
-from ..inference.outliers import WIDER
+from ..rules import RULES
 
 STATED, WITHOUT, WITH = "as stated", "best without anything missing", "with the verdict"
 """The three simulations that are drawn, as every legend names them."""
@@ -110,7 +110,7 @@ def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
     base, stated = v.ranking.base, v.stated
     along = againsts(v)
     counts = np.array([i not in v.problem.weightless for i in range(len(cells))])
-    std = np.where(counts, cells.std, cells.std / WIDER)
+    std = np.where(counts, cells.std, cells.std / RULES.outlier_wider)
     found = []
     for i, name in enumerate(cells.observable):
         row, log = OBSERVABLES[name], bool(cells.is_log[i])

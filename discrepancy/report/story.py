@@ -144,8 +144,7 @@ def story_of(v: Verdict) -> Story:
         numbers=_numbers(v),
         scores=_scores(v),
         excluded=ToldCells(
-            ("what", "why not"),
-            tuple((title_of(k, v.titles), why) for k, why in v.excluded.items()),
+            ("what", "why not"), tuple((title_of(k, v.titles), x) for k, x in v.excluded.items())
         ),
         limits=_limits(v),
         next_step=step,
@@ -169,7 +168,7 @@ def _summary(v: Verdict) -> str:
 def _took(v: Verdict, fitted: Fit) -> str:
     """How well a simulation fits, and which numbers it moved further than chance would."""
     p, struck = v.problem, _struck(v)
-    names = [*(number_name(n.name, struck=struck) for n in p.nuisances)]
+    names = [number_name(n.name, struck=struck) for n in p.nuisances]
     names += ["the contact law"] * (len(fitted.z) - len(names))
     far: dict[str, float] = {}
     for name, z in sorted(zip(names, fitted.z, strict=True), key=lambda item: -abs(item[1])):
@@ -181,19 +180,14 @@ def _took(v: Verdict, fitted: Fit) -> str:
 
 
 def _found(v: Verdict) -> ToldCells:
-    rows = []
-    if v.best.mechanisms:
-        axes = v.best.grid.axes
-        for (name, q), axis in zip(own_parameters(v).items(), axes, strict=True):
-            rows.append(
-                (
-                    name, quantity(q["value"], q["unit"]),
-                    interval(q["low"], q["high"], q["unit"]), axis.parameter.source,
-                )
-            )  # fmt: skip
-    return ToldCells(
-        ("number", "value", "90 % interval", "where its range comes from"), tuple(rows)
-    )
+    rows = tuple(
+        (
+            name, quantity(q["value"], q["unit"]), interval(q["low"], q["high"], q["unit"]),
+            axis.parameter.source,
+        )
+        for (name, q), axis in zip(own_parameters(v).items(), v.best.grid.axes, strict=True)
+    )  # fmt: skip
+    return ToldCells(("number", "value", "90 % interval", "where its range comes from"), rows)
 
 
 def _prediction(v: Verdict) -> str:
@@ -221,27 +215,24 @@ def _doubt(v: Verdict) -> tuple[Bar, ...]:
         name = number_name(n.name, struck=struck)
         sources[name] = sources.get(name, 0.0) + linear.J[:, k] ** 2
     sources["the contact law's own error"] = np.sum(linear.J[:, p.n_nuisances :] ** 2, axis=1)
-    if linear.form.size:
-        sources["the textbook form of the mechanism"] = np.sum(linear.form**2, axis=1)
+    sources["the textbook form of the mechanism"] = np.sum(linear.form**2, axis=1)
     bars = [Bar(k, float(np.mean((x / total)[counts]))) for k, x in sources.items()]
     return tuple(b for b in sorted(bars, key=lambda b: -b.share) if b.share >= 0.01)
 
 
 def _numbers(v: Verdict) -> ToldCells:
-    rows = []
     struck = _struck(v)
-    for n in v.problem.nuisances:
-        q = v.parameters[n.name]
-        rows.append(
-            (
-                number_name(n.name, struck=struck) + ("" if n.stated else " (assumed)"),
-                quantity(n.value, n.unit), quantity(q["value"], q["unit"]),
-                interval(q["low"], q["high"], q["unit"]),
-                f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
-            )
-        )  # fmt: skip
+    rows = tuple(
+        (
+            number_name(n.name, struck=struck) + ("" if n.stated else " (assumed)"),
+            quantity(n.value, n.unit), quantity(q["value"], q["unit"]),
+            interval(q["low"], q["high"], q["unit"]),
+            f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
+        )
+        for n, q in ((n, v.parameters[n.name]) for n in v.problem.nuisances)
+    )  # fmt: skip
     head = ("number of set.toml", "stated", "found", "90 % interval", "shift", "surprise")
-    return ToldCells(head, tuple(rows))
+    return ToldCells(head, rows)
 
 
 def _struck(v: Verdict) -> str:
@@ -269,11 +260,7 @@ def _scores(v: Verdict) -> ToldCells:
 def _limits(v: Verdict) -> ToldCells:
     units = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
     rows = tuple(
-        (
-            title_of(k, v.titles),
-            units[k].name if k in units else "",
-            quantity(x, units[k].unit),
-        )
+        (title_of(k, v.titles), units[k].name, quantity(x, units[k].unit))
         for k, x in v.limits.items()
         if k in units
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.observables import OBSERVABLES
 from ..choice.decide import WRONG_INPUT
-from ..choice.odds import OUTSIDE, SURE
+from ..choice.odds import OUTSIDE
 from ..findings import Verdict, WrongInput
 from ..rules import RULES
 from .next_session import change_lines, next_lines
@@ -57,11 +57,10 @@ def _finding(v: Verdict) -> str:
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
         sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
         each = " each" if len(v.mechanisms) > 1 else ""
-        lacks = "lacks this"
-        if max(v.probabilities.values()) < RULES.cautious:
-            lacks = "most likely lacks this"
+        likely = "most likely " * (max(v.probabilities.values()) < RULES.cautious)
         return (
-            f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}.{beside}"
+            f"The simulation {likely}lacks this: {what}; probability that it takes part{each}: "
+            f"{sure}.{beside}"
         )
     if v.verdict == "indistinguishable":
         shared = [f.name for f in v.choice.members]
@@ -80,16 +79,14 @@ def _finding(v: Verdict) -> str:
             f"cause is something else (probability {percent(v.probabilities[OUTSIDE])})."
         )
     missing = 1.0 - v.probabilities["baseline"]
-    sure = f"Something is missing ({percent(missing)}), but " if missing > SURE else ""
+    sure = f"Something is missing ({percent(missing)}), but " if missing > RULES.sure else ""
     if any(reason.startswith("too few") for reason in v.reasons):
         return f"{sure}too few data to say what." if sure else "Too few data to say."
     leads = list(v.probabilities.items())[:_NAMED_LEADING]
     likely = ", ".join(f"{explanation(name, v.titles)} {percent(p)}" for name, p in leads)
-    unclear = (
-        f"{sure}these data do not say what."
-        if sure
-        else "These data do not say whether something is missing, or what."
-    )
+    unclear = "These data do not say whether something is missing, or what."
+    if sure:
+        unclear = f"{sure}these data do not say what."
     return f"{unclear} What leads, by probability: {likely}.{_family(v)}"
 
 
@@ -105,8 +102,7 @@ def _wrong(w: WrongInput) -> str:
         )
     else:
         unit = n.parameters[0].unit
-        off = f"{quantity(w.off, unit)} ({interval(w.low, w.high, unit)})"
-        found += f" {n.told.format(off)}"
+        found += f" {n.told.format(f'{quantity(w.off, unit)} ({interval(w.low, w.high, unit)})')}"
     slip = n.slip(w.low, w.high)
     return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
 
@@ -150,10 +146,9 @@ def _times(nats: float) -> str:
 
 def nowhere(v: Verdict) -> str:
     """Return how places and verdict go together; "" where both say that something is missing."""
-    beyond = bool(v.located.beyond_chance)
     nothing = v.probabilities.get("baseline", 0.0)
     told = percent(nothing)
-    if beyond:
+    if v.located.beyond_chance:
         if nothing < 0.5:
             return ""
         return (
@@ -180,8 +175,7 @@ def lines(v: Verdict) -> list[str]:
     seen = ", ".join(OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable))
     out = [
         f"{v.name}: {counted(trials, 'trial')}, {counted(len(p.conditions), 'condition')}, "
-        f"{counted(len(p.cells), 'number')} "
-        f"({seen})",
+        f"{counted(len(p.cells), 'number')} ({seen})",
         "",
         headline(v),
     ]

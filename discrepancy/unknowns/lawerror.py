@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -38,15 +38,9 @@ from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
 from ..rules import RULES
 
-SIZE_SPREAD = RULES.size_spread
-"""Standard deviation of the logarithm of the size of all this: a metal's 3 % may be 1.5 or 6."""
-SIZES = Sizes(
-    tuple(math.exp(k * math.sqrt(3.0) * SIZE_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
-)
-"""Of the law's error: the three points of Gauss and Hermite."""
+SIZES = Sizes.normal(RULES.size_spread)
+"""Of the law's error."""
 FREE = dict(RULES.free_law)
-"""Standard deviations of a contact law that is free: what something unknown may make of it."""
-
 _KINDS = ("force", "recovery", "recovery exponent", "crater", "radius")
 _GRID = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
 # Depths that impacts reach; outside, the components stay at their end values.
@@ -74,7 +68,7 @@ class Spread:
     @cached_property
     def exponent(self) -> float:
         """Standard deviation of the recovery's exponent, the mean over the peaks."""
-        return float(np.mean(np.interp(self.reached, _GRID, self.total["recovery exponent"])))
+        return float(np.mean(self.at_peaks(self.total, "recovery exponent")))
 
     def at_peaks(self, part: Mapping[str, Array], kind: str) -> Array:
         """Return the standard deviations of a part at the peaks, (n,)."""
@@ -156,9 +150,7 @@ class LawError:
     def crater_change(self, b: Array, strikers: Sequence[str], depth_over_R: Array) -> Array:
         """Return the logarithmic change of the craters of impacts with these peak depths, (n,)."""
         curve = b[self.rows["crater"]] @ self.crater
-        return self._along(
-            {n: s.total["crater"] * curve for n, s in self.spreads.items()}, strikers, depth_over_R
-        )
+        return self._along(lambda s: s.total["crater"] * curve, strikers, depth_over_R)
 
     def radius_change(self, b: Array, strikers: Sequence[str], depth_over_R: Array) -> Array:
         """Return the logarithmic change of the contact's radius at these depths, (n,).
@@ -168,29 +160,26 @@ class LawError:
         """
         force, own = b[self.rows["force"]] @ self.force, b[self.rows["radius"]] @ self.radius
         return self._along(
-            {
-                n: 0.5 * s.total["force"] * force + s.total["radius"] * own
-                for n, s in self.spreads.items()
-            },
+            lambda s: 0.5 * s.total["force"] * force + s.total["radius"] * own,
             strikers, depth_over_R,
         )  # fmt: skip
 
     def _along(
-        self, curves: Mapping[str, Array], strikers: Sequence[str], depth_over_R: Array
+        self, curve: Callable[[Spread], Array], strikers: Sequence[str], depth_over_R: Array
     ) -> Array:
         """Read each striker's curve over the depth nodes at its own peak depths, (n,)."""
         x = np.log(np.maximum(depth_over_R, 1e-9))
         change = np.zeros(len(x))
         for name in set(strikers):
             here = np.array([s == name for s in strikers])
-            change[here] = np.interp(x[here], _GRID, curves[name])
+            change[here] = np.interp(x[here], _GRID, curve(self.spreads[name]))
         return change
 
 
-def components(length: float, *, keep: float = 0.97) -> Array:
+def components(length: float) -> Array:
     """Leading components (k, NODES) of a smooth random function of ln(depth/R), of unit variance.
 
-    `length`: correlation length in ln(depth/R); `keep`: share of the variance kept.
+    `length`: correlation length in ln(depth/R). 97 % of the variance are kept.
     """
     x = np.clip(_GRID, _FIRST, _LAST)
     inner = np.linspace(_FIRST, _LAST, 60)
@@ -198,7 +187,7 @@ def components(length: float, *, keep: float = 0.97) -> Array:
     size, shape = np.linalg.eigh(cov)
     order = np.argsort(size)[::-1]
     size, shape = size[order], shape[:, order]
-    n = int(np.searchsorted(np.cumsum(size) / np.sum(size), keep)) + 1
+    n = int(np.searchsorted(np.cumsum(size) / np.sum(size), 0.97)) + 1
     curves = (shape[:, :n] * np.sqrt(size[:n])).T
     return np.stack([np.interp(x, inner, curve) for curve in curves])
 
@@ -219,10 +208,8 @@ def law_error(
     spreads = {name: _spread(found, second) for name, found in scenes.items()}
     smooth = components(RULES.law_length)
     lost = max(float(np.max(s.metal["recovery"])) for s in spreads.values())
-    radius = smooth if dents else _NONE
-    if lost == 0.0:
-        return LawError(smooth, _NONE, _NONE, spreads, radius)
-    return LawError(smooth, smooth, smooth, spreads, radius)
+    back = smooth if lost else _NONE
+    return LawError(smooth, back, back, spreads, smooth if dents else _NONE)
 
 
 def _spread(scenes: Sequence[Scene], second: SecondSphere | None) -> Spread:

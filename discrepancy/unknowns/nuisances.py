@@ -11,12 +11,10 @@ import numpy as np
 from ...core.observables import LOAD
 from ...core.rig import BodyTable, Quantity
 from ...recordings import RecordingSet
-from ..comparison.conditions import LOAD_CLASS, SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+from ...recordings.checks.press import LOAD_CLASS
+from ..comparison.conditions import Condition
 from ..rules import RULES
 
-ASSUMED_E = RULES.assumed_modulus
-ASSUMED_NU = RULES.assumed_poisson
-"""Modulus [Pa] and Poisson's ratio of a body of which the set says nothing."""
 GAUGE = "gauge."
 """Begins the name of a scale that all readings of an observable share."""
 LOAD_SCALE = GAUGE + LOAD
@@ -64,7 +62,7 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
         found += _stated(table.mass_kg, f"{key}.mass_kg", "kg")
     if any(c.press is None for c in conditions):
         measured = not any(c.around.from_height for c in conditions)
-        spread = SPEED_MEASURED if measured else SPEED_FROM_HEIGHT
+        spread = RULES.speed_measured if measured else RULES.speed_from_height
         found.append(Nuisance("speed.scale", "-", 1.0, spread, stated=False))
     found += _gauges(recordings, any(c.press is not None for c in conditions))
     leaning = [c for c in conditions if c.angle < math.pi / 2.0 - 1e-6]
@@ -111,8 +109,9 @@ def _gauges(recordings: RecordingSet, pressed: bool) -> list[Nuisance]:
 def _of_body(table: BodyTable, key: str, yields: bool) -> list[Nuisance]:
     found = _stated(table.E_Pa, f"{key}.E_Pa", "Pa")
     if table.E_Pa is None:
-        note = f"{key}.E_Pa is not stated: {ASSUMED_E / 1e9:.0f} GPa within 40 % is assumed"
-        found.append(Nuisance(f"{key}.E_Pa", "Pa", ASSUMED_E, 0.4, stated=False, note=note))
+        E = RULES.assumed_modulus
+        note = f"{key}.E_Pa is not stated: {E / 1e9:.0f} GPa within 40 % is assumed"
+        found.append(Nuisance(f"{key}.E_Pa", "Pa", E, 0.4, stated=False, note=note))
     found += _stated(table.Sy_Pa, f"{key}.Sy_Pa", "Pa")
     strength = table.strength
     if table.Sy_Pa is None and strength is not None:

@@ -80,9 +80,9 @@ class WrongNumber(Mechanism):
         self.key, self.kind, self.title, self.unit = key, kind, title, unit
         self.name = WRONG + key
         self.equations = f"{key} times the factor"
-        most, nodes = RULES.wrong_most, RULES.wrong_nodes
+        most = RULES.wrong_most
         self.parameters = (
-            Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE, nodes=nodes),
+            Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE),
         )  # fmt: skip
 
     @property
@@ -119,10 +119,10 @@ class WrongHeight(WrongNumber):
     def __init__(self, most: float) -> None:
         super().__init__("drop_height_m", "height", "all heights of fall are off by one length")
         self.equations = "drop_height_m plus the offset"
-        told, nodes = "within two diameters", RULES.wrong_nodes
+        told = "within two diameters"
         self.parameters = (
-            Parameter("drop_height_m_offset", "m", -most, most, "linear", 0.0, told, nodes=nodes),
-        )
+            Parameter("drop_height_m_offset", "m", -most, most, "linear", 0.0, told),
+        )  # fmt: skip
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Return the scene with the speed of the other height."""

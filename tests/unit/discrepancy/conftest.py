@@ -41,6 +41,7 @@ class Effect:
     jumps: bool = False
     named: bool = True
     rests_on: tuple[str, ...] = ()
+    title: str = "a shape"
     parameters: tuple[Parameter, ...] = (
         Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5),
     )

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.heldout import groups_of, held_out
+from dentscope.discrepancy.heldout import groups_of, held_out, missed
+from dentscope.discrepancy.inference.linear import Linear
 from scipy.stats import norm
 
 
@@ -56,3 +57,23 @@ def test_sizes_count_by_how_well_they_explain_what_was_kept(toy) -> None:
     data, effect = [0.8, 1.6], toy.Effect("a", (40.0, 80.0))
     # shown one cell, the size is known to 1/80 or 1/40 of its range: 2 standard errors at the most
     assert held_out(toy.problem(data), toy.fit_of(data, effect)).rms < 1.5
+
+
+def test_some_cells_foretell_the_others() -> None:
+    rng = np.random.default_rng(5)
+    linear = Linear(np.eye(4), rng.normal(size=(4, 2)), rng.normal(size=(4, 3)))
+    r, out = rng.normal(size=(3, 4)), np.array([False, True, False, True])
+    kept = linear.total[np.ix_(~out, ~out)]
+    precision = np.linalg.inv(linear.total)
+    g = r @ precision
+    foretold = r[:, ~out] @ np.linalg.solve(kept, linear.total[np.ix_(~out, out)])
+    whole = np.sum(r * g, axis=1)
+    miss, squares, log_density = missed(whole, g[:, out], precision[np.ix_(out, out)])
+    assert miss == pytest.approx(r[:, out] - foretold)
+    assert squares == pytest.approx(
+        np.einsum("ki,ij,kj->k", r[:, ~out], np.linalg.inv(kept), r[:, ~out])
+    )
+    # of all less of the others
+    both = linear.log_likelihood(r)
+    others = -0.5 * (squares + np.linalg.slogdet(2.0 * math.pi * kept)[1])
+    assert log_density == pytest.approx(both - others)

@@ -7,7 +7,7 @@ import pytest
 from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.locate import ORDER, locate
 from dentscope.discrepancy.unknowns.covariates import covariates
-from dentscope.discrepancy.unknowns.drift import Drift
+from dentscope.discrepancy.unknowns.repeats import Drift
 
 SPEEDS = [1.0, np.e, np.e**2, np.e**3]
 BALL = {"length_m": 0.0, "tip_radius_m": 0.01, "mass_kg": 0.1}

@@ -16,9 +16,8 @@ from dentscope.discrepancy.inference.derivatives import FORMS, derivatives, form
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import outlying
 from dentscope.discrepancy.rank import rank
-from dentscope.discrepancy.unknowns.drift import drift_of
-from dentscope.discrepancy.unknowns.followed import Entries, followed_of
 from dentscope.discrepancy.unknowns.lawerror import FREE, SIZES
+from dentscope.discrepancy.unknowns.repeats import Entries, drift_of, followed_of
 from dentscope.dynamics.mechanisms.base import Parameter
 from dentscope.recordings import read
 from dentscope.recordings.shipped import set_folder

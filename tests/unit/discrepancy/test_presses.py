@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
-from dentscope.discrepancy.experiments.feasible import BENCH, presses_of
+from dentscope.discrepancy.experiments.feasible import presses_of
 from dentscope.discrepancy.inference.fit import baseline_situations
+from dentscope.discrepancy.nulls.ensemble import press
 from dentscope.discrepancy.nulls.laws import NullCurve
-from dentscope.discrepancy.nulls.press import press
+from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
 from dentscope.dynamics import Approach, strike
 from dentscope.dynamics.mechanisms import MECHANISMS
@@ -93,7 +94,7 @@ def test_presses_are_proposed_within_a_bench_press_and_as_deep(problem):
     found = presses_of(problem(IMPACTS))
     loads = [c.condition.press.load for c in found]
     assert len(loads) == 4
-    assert BENCH[0] <= min(loads) < max(loads) <= BENCH[1]
+    assert RULES.bench[0] <= min(loads) < max(loads) <= RULES.bench[1]
     speeds = [c.condition.speed for c in found]
     assert speeds[::3] == pytest.approx([1.0, 3.0], rel=0.05)
     assert all("press ball slowly" in c.change for c in found)

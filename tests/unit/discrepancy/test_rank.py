@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
+from dentscope.discrepancy.choice.pairs import pair_effect, with_pairs
 from dentscope.discrepancy.comparison.forward import Point
 from dentscope.discrepancy.inference.grid import Axis, Grid
-from dentscope.discrepancy.inference.outliers import WIDER
 from dentscope.discrepancy.inference.together import refined
 from dentscope.discrepancy.rank import rank
+from dentscope.discrepancy.rules import RULES
 from dentscope.dynamics.mechanisms.base import Parameter
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
@@ -60,14 +60,12 @@ def test_what_has_no_name_is_kept_apart_with_its_evidence(toy, library) -> None:
     nameless = toy.Effect("nameless", RISING, named=False)
     _, found = ranked(toy, (*library[:1], *library[2:], nameless), 0.5 * np.array(RISING))
     _, named = ranked(toy, library, 0.5 * np.array(RISING))
-    (kept,) = found.nameless
-    assert kept.log_bayes == pytest.approx(
-        named.singles[0].log_evidence - named.base.log_evidence, abs=1e-9
-    )
+    (kept,) = found.nameless.values()
+    assert kept == pytest.approx(named.singles[0].log_evidence - named.base.log_evidence, abs=1e-9)
     assert "nameless" not in {*found.excluded, *(f.name for f in found.fits)}
     assert [s.mechanism.name for s in found.screened] == ["alike", "bent"]
     _, gone = ranked(toy, (*library, replace(nameless, reason="it cannot act here")), RISING)
-    assert gone.nameless == ()
+    assert gone.nameless == {}
     assert "nameless" not in gone.excluded
 
 
@@ -122,7 +120,7 @@ def test_an_outlier_loses_its_weight_in_the_problem_that_is_returned(toy, librar
     data = np.zeros(8)
     data[5] = 40.0
     simulator, found = ranked(toy, library, data)
-    assert found.problem.cells.std.tolist() == [1, 1, 1, 1, 1, WIDER, 1, 1]
+    assert found.problem.cells.std.tolist() == [1, 1, 1, 1, 1, RULES.outlier_wider, 1, 1]
     assert "given no weight" in found.problem.notes[-1]
     assert "6 m/s" in found.problem.notes[-1]
     # nothing was written into what was given
@@ -158,7 +156,7 @@ def test_what_two_mechanisms_do_to_each_other_is_part_of_a_pair(toy, library) ->
     one, two = (
         next(s for s in found.screened if s.mechanism.name == n) for n in ("rising", "bent")
     )
-    both = PairEffect(bench, one, two)
+    both = pair_effect(bench, one, two)
     place = np.array([0.5, 0.4])
     grid = Grid((*one.grid.axes, *two.grid.axes))
     at = grid.index(place)

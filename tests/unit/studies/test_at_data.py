@@ -58,8 +58,9 @@ def test_draws_go_on_where_they_stopped(tmp_path, monkeypatch) -> None:
         problem=None, fits=[SimpleNamespace(names=n, name="+".join(n)) for n in LEADING.values()]
     )
     monkeypatch.setattr(at_data, "read", lambda place: place.name)
-    monkeypatch.setattr(at_data, "problem_of", lambda read: read)
-    monkeypatch.setattr(at_data, "rank", lambda simulator: ranking)
+    problem = SimpleNamespace(wrong_numbers=())
+    monkeypatch.setattr(at_data, "problem_of", lambda read: problem)
+    monkeypatch.setattr(at_data, "rank", lambda simulator, mechanisms: ranking)
     monkeypatch.setattr(at_data, "with_pairs", lambda simulator, ranking: ranking)
     monkeypatch.setattr(at_data, "ranks", lambda simulator, found, rng: {"k": rng.random()})
     out = tmp_path / "ranks.jsonl"

@@ -10,7 +10,7 @@ from dentscope.discrepancy.choice.families import family_of
 from dentscope.discrepancy.choice.odds import OUTSIDE, PRIORS, Odds, odds_of, prior_shares, tempered
 from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.rules import RULES
-from dentscope.discrepancy.unknowns.drift import Drift
+from dentscope.discrepancy.unknowns.repeats import Drift
 from dentscope.discrepancy.unknowns.wrong_number import WrongNumber
 
 CELLS = 8
@@ -188,7 +188,7 @@ def test_a_mechanism_without_a_fit_counts_by_its_screening(toy) -> None:
     ranking = toy.ranking_of(toy.problem([0.0] * CELLS), toy.fit_of(ZERO), screened=[screened])
     found = odds_of(ranking)
     prior = PRIORS["mechanisms"] / PRIORS["baseline"]
-    assert found.probability["a"] / found.baseline == pytest.approx(
+    assert found.probability["a"] / found.probability["baseline"] == pytest.approx(
         prior * math.exp(tempered(math.log(6.0)))
     )
 
@@ -232,7 +232,7 @@ def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy
     share = found.probability["a"] / found.probability["b"]
     assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / 200.0)
     outside = PRIORS[OUTSIDE] * (200.0 * found.probability["a"] + found.probability["b"])
-    assert found.outside == pytest.approx(outside, rel=1e-3)
+    assert found.probability[OUTSIDE] == pytest.approx(outside, rel=1e-3)
 
 
 def test_a_pair_without_a_fit_counts_by_its_screening_and_fits_as_its_better_single(toy) -> None:
@@ -252,9 +252,9 @@ def test_a_drift_that_is_sure_leaves_the_rest_to_something_outside(toy) -> None:
         toy.problem([0.0] * CELLS, drifts=(Drift("restitution", 0.1, 20.0, -200.0),)),
         toy.fit_of(ZERO),
     )
-    assert odds_of(ranking).outside > 0.99
+    assert odds_of(ranking).probability[OUTSIDE] > 0.99
 
 
 def test_the_baseline_is_no_surer_than_sets_drawn_can_support(toy) -> None:
     ranking = toy.ranking_of(toy.problem([0.0] * CELLS), toy.fit_of(ZERO))
-    assert odds_of(ranking).baseline <= 1.0 - RULES.supported
+    assert odds_of(ranking).probability["baseline"] <= 1.0 - RULES.supported

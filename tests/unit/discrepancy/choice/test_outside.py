@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.outside import AMPLITUDES, odd_repeats, outside_of
-from dentscope.discrepancy.unknowns.drift import Drift
-from dentscope.discrepancy.unknowns.followed import Followed
+from dentscope.discrepancy.choice.outside import odd_repeats, outside_of
+from dentscope.discrepancy.rules import RULES
+from dentscope.discrepancy.unknowns.repeats import Drift, Followed
 
 CELLS = 8
 
@@ -23,11 +23,11 @@ def test_its_weights_are_a_prior_and_its_departures_are_parts_of_the_value(toy) 
     given = toy.problem([200.0] * CELLS)
     found = outside_of(given, toy.fit_of([0.0] * CELLS))
     assert np.exp(found.log_weight).sum() == pytest.approx(1.0)
-    assert np.sqrt(found.parts[-1].noise[0, 0] - 1.0) == pytest.approx(AMPLITUDES[-1] * 200.0)
+    assert np.sqrt(found.parts[-1].noise[0, 0] - 1.0) == pytest.approx(RULES.amplitudes[-1] * 200.0)
     # of a logarithm the departure is the part itself
     force = toy.problem([5.0] * CELLS, observable="peak_force_N")
     parts = outside_of(force, toy.fit_of([0.0] * CELLS)).parts
-    assert np.sqrt(parts[-1].noise[0, 0] - 1.0) == pytest.approx(AMPLITUDES[-1])
+    assert np.sqrt(parts[-1].noise[0, 0] - 1.0) == pytest.approx(RULES.amplitudes[-1])
 
 
 def test_noise_alone_speaks_against_it(toy) -> None:

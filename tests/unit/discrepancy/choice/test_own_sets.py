@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.own_sets import fit_test
+from dentscope.discrepancy.choice.thresholds import fit_test
 from dentscope.discrepancy.inference.linear import Linear, Mixture
 from scipy.integrate import quad
 

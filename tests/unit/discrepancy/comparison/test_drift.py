@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.unknowns.drift import drift_of
+from dentscope.discrepancy.unknowns.repeats import drift_of
 
 
 def repeats(rng, slope, *, conditions=12, each=3, std=0.01, scatter=1.0):

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.unknowns.followed import FALSE_ALARMS, Entries, followed_of
+from dentscope.discrepancy.rules import RULES
+from dentscope.discrepancy.unknowns.repeats import Entries, followed_of
 from scipy.stats import f_oneway
 
 
@@ -36,7 +37,7 @@ def test_a_column_that_matters_is_seen_and_one_that_does_not_is_not():
     seen = [followed_of("x_day", "restitution", sheets(rng, 0.0), tested=1) for _ in range(400)]
     # two in four hundred would come up once in sixteen such tests
     assert sum(s is not None for s in seen) <= 2
-    assert FALSE_ALARMS * 400 < 1.0
+    assert RULES.false_alarms * 400 < 1.0
 
 
 def test_entries_without_repeats_are_held_against_the_stated_noise():

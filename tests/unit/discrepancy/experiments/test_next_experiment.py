@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.odds import Odds
+from dentscope.discrepancy.experiments import feasible
 from dentscope.discrepancy.experiments.feasible import again, candidates_of, presses_of, to_build
 from dentscope.discrepancy.experiments.foreseen import (
     Foreseen,
@@ -198,7 +199,7 @@ def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None
     given = on_rig(toy, ball=BALL)
     monkeypatch.setattr(type(given), "with_error", lambda self, known: self, raising=False)
     # the toy has no law that a press could go by
-    monkeypatch.setattr(f"{propose.__module__}.presses_of", lambda problem: [])
+    monkeypatch.setattr(feasible, "presses_of", lambda problem: [])
     base, one = toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 2.0)))
     ranking = toy.ranking_of(given, base, singles=[one])
     shared = odds(baseline=0.5, a=0.5)
@@ -210,11 +211,11 @@ def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None
     assert session.goes_on
     assert session.steps[0].trial["speed_m_s"] > 1.4
     alone = toy.ranking_of(given, base)
-    assert not propose(Seen(given), alone, odds(baseline=1.0), np.random.default_rng(0)).each
+    assert not propose(Seen(given), alone, odds(baseline=1.0), np.random.default_rng(0))[0]
     # a rig that strikes at low speeds only tells nothing, a larger ball at the largest does not
     slow = replace(given, bench=Bench(speeds_m_s=(0.5, 1.0), minutes=Minutes(build=60.0)))
     slow = replace(slow, conditions=slow.conditions[:1] * 2)
-    stopped = propose(Seen(slow), ranking, shared, np.random.default_rng(0)).session
+    _, stopped = propose(Seen(slow), ranking, shared, np.random.default_rng(0))
     assert not stopped.goes_on
 
 

@@ -21,8 +21,7 @@ from dentscope.discrepancy.experiments.next_experiment import (
     propose,
     rivals_of,
 )
-from dentscope.discrepancy.experiments.proposal import Proposal
-from dentscope.discrepancy.experiments.session import Session
+from dentscope.discrepancy.experiments.session import Proposal, Session
 from dentscope.discrepancy.inference.sampling import _next_step
 from dentscope.discrepancy.metal.estimate import rate_prior
 from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
@@ -60,7 +59,7 @@ def pressed_set(toy, monkeypatch):
         pair = Pair(Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3), 0.01)
         scenes = [SimpleNamespace(law=None, pair=pair, load=x) for x in reached]
         c = replace(toy.condition(), press=Press(1.0)) if pressed else toy.condition()
-        monkeypatch.setattr(feasible, "_by_striker", lambda p: {"ball": [(c, s) for s in scenes]})
+        monkeypatch.setattr(feasible, "by_striker", lambda p: {"ball": [(c, s) for s in scenes]})
         x = np.linspace(-5.0, 15.0, 201)
         table = SimpleNamespace(log_depth=x, stated=SimpleNamespace(force=x))
         monkeypatch.setattr(feasible, "strength_table", lambda law, pair: table)
@@ -138,7 +137,7 @@ def test_what_tells_most_in_an_hour_comes_first(toy, monkeypatch) -> None:
         base = toy.fit_of([0.0])
         ranking = toy.ranking_of(None, base, singles=[toy.fit_of([0.0], toy.Effect("a", (1.0,)))])
         given = Odds({}, {"baseline": 0.6, "a": 0.4})
-        return propose(None, ranking, given, None).each[0].change
+        return propose(None, ranking, given, None)[0][0].change
 
     assert [first(1.9), first(2.1)] == ["strike", "press"]
 
@@ -179,7 +178,7 @@ def test_a_verdict_draws_500_nulls_and_2000_to_confirm(monkeypatch) -> None:
         raise Enough
 
     monkeypatch.setattr(verdict, "_explained", explained)
-    monkeypatch.setattr(verdict, "audit_rows", lambda r: ())
+    monkeypatch.setattr(verdict.estimates, "audit_rows", lambda r: ())
     monkeypatch.setattr(verdict, "problem_of", lambda r, **more: None)
     for confirm in (False, True):
         with pytest.raises(Enough):
@@ -207,7 +206,8 @@ def test_a_metals_curve_is_looked_for_by_eight_presses_of_each_striker(toy, monk
     from dentscope.discrepancy.metal import next_mark as module
 
     given = toy.problem([0.0])
-    monkeypatch.setattr(module, "strikers_scenes", lambda p: [(toy.condition(), None)] * 2)
+    some = {name: [(toy.condition(), None)] for name in "ab"}
+    monkeypatch.setattr(module, "by_striker", lambda p: some)
     monkeypatch.setattr(module, "at_load", lambda c, s, load: replace(c, press=Press(load)))
     found = with_marks(given, (10.0, 1000.0))
     loads = [c.press.load for c in found.conditions if c.press is not None]

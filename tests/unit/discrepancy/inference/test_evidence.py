@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.estimates import parameters_of
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
-from dentscope.discrepancy.inference.left_out import Whole
 from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
 from dentscope.dynamics.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
@@ -87,7 +86,7 @@ def test_interval_of_a_normal_sample() -> None:
     edges = np.linspace(-6.0, 6.0, 4002)
     weight = np.diff(norm.cdf(edges))
     expected = (0.0, norm.ppf(0.05), norm.ppf(0.95))
-    assert interval(edges, weight) == pytest.approx(expected, abs=1e-5)
+    assert interval(edges, weight, 0.9) == pytest.approx(expected, abs=1e-5)
 
 
 @pytest.mark.parametrize("centre", [0.45, 0.4829, 0.5, 0.5171])
@@ -98,7 +97,7 @@ def test_ends_of_an_interval_are_not_bound_to_the_places_of_a_grid(centre: float
     sd = 2.0 / 17.0
     cov = sd**2 * np.array([[1.0, 0.7, 0.0], [0.7, 1.0, 0.5], [0.0, 0.5, 1.0]])
     weight = multivariate_normal([0.5, centre, 0.5], cov).pdf(grid.places())
-    middle, low, high = interval(*grid.marginal(weight / weight.sum(), 1))
+    middle, low, high = interval(*grid.marginal(weight / weight.sum(), 1), 0.9)
     assert middle == pytest.approx(centre, abs=0.002)
     reach = norm.ppf(0.95) * sd
     assert (middle - low, high - middle) == pytest.approx((reach, reach), rel=0.05)
@@ -150,24 +149,6 @@ def test_the_size_of_an_error_is_integrated_over() -> None:
 def test_without_unknowns_that_scale_there_is_one_size() -> None:
     linear = Linear(np.eye(2), np.zeros((2, 1)))
     assert len(Mixture.of(linear, 1, Sizes((0.5, 1.0), (0.5, 0.5))).parts) == 1
-
-
-def test_some_cells_foretell_the_others() -> None:
-    rng = np.random.default_rng(5)
-    linear = Linear(np.eye(4), rng.normal(size=(4, 2)), rng.normal(size=(4, 3)))
-    r, out = rng.normal(size=(3, 4)), np.array([False, True, False, True])
-    kept = linear.total[np.ix_(~out, ~out)]
-    whole = Whole.of(linear, r)
-    foretold = r[:, ~out] @ np.linalg.solve(kept, linear.total[np.ix_(~out, out)])
-    miss, squares, log_density = whole.missed(out)
-    assert miss == pytest.approx(r[:, out] - foretold)
-    assert squares == pytest.approx(
-        np.einsum("ki,ij,kj->k", r[:, ~out], np.linalg.inv(kept), r[:, ~out])
-    )
-    # of all less of the others
-    both = linear.log_likelihood(r)
-    others = -0.5 * (squares + np.linalg.slogdet(2.0 * math.pi * kept)[1])
-    assert log_density == pytest.approx(both - others)
 
 
 def test_interval_holds_what_a_form_may_be_off_in_size() -> None:

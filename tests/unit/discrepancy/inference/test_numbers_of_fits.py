@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.pairs import PairEffect, _candidates, with_pairs
+from dentscope.discrepancy.choice.pairs import _candidates, pair_effect, with_pairs
 from dentscope.discrepancy.inference.derivatives import _beside
-from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, tried_steps
+from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, sharpened, tried_steps
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import _neighbours, without_weight
 from dentscope.discrepancy.inference.together import refined
-from dentscope.discrepancy.inference.window import sharpened
 from dentscope.discrepancy.rank import rank, sharpened_leading
 from dentscope.dynamics import Press
 from dentscope.dynamics.mechanisms.base import Parameter
@@ -287,6 +286,6 @@ def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy
             return super().predict(mechanisms, points)
 
     a, b = toy.Effect("a", (1.0,)), toy.Effect("b", (2.0,))
-    both = PairEffect(Counting(toy.problem([0.0])), screened_fully(toy, a), screened_fully(toy, b))
+    both = pair_effect(Counting(toy.problem([0.0])), screened_fully(toy, a), screened_fully(toy, b))
     both(NOWHERE, np.array([0.5, 0.5]))
     assert sorted(seen) == pytest.approx([0.38, 0.5, 0.62])

@@ -4,9 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.inference.fit import fit
+from dentscope.discrepancy.inference.fit import fit, sharpened
 from dentscope.discrepancy.inference.sampling import sampled_evidence
-from dentscope.discrepancy.inference.window import sharpened
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
 

@@ -26,8 +26,9 @@ def reference(Y: float) -> NullReference:
         force = (force**-2 + (2.0 * math.pi * R * 3.0 * Y * depth) ** -2) ** -0.5
     recovery = np.minimum(0.75 * force / (E * np.sqrt(1.5 * R * depth)), depth)
     return NullReference(
-        R, E, Y, depth, force, recovery, depth - recovery, np.sqrt(R * depth), low=5e-6, high=3e-4
-    )
+        R, E, Y, depth, force, recovery, depth - recovery, np.sqrt(R * depth), np.ones(len(depth)),
+        low=5e-6, high=3e-4,
+    )  # fmt: skip
 
 
 def elastic_reference(**between: float) -> NullReference:

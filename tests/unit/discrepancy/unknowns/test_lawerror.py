@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
+from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.lawerror import (
-    SIZE_SPREAD,
     SIZES,
     law_error,
     not_given_back,
@@ -77,8 +77,8 @@ def test_unknowns_move_the_restitution_by_their_size() -> None:
 def test_sizes_have_the_moments_of_a_normal_logarithm() -> None:
     x, w = np.log(SIZES.factors), np.array(SIZES.weights)
     assert w.sum() == pytest.approx(1.0)
-    assert w @ x**2 == pytest.approx(SIZE_SPREAD**2)
-    assert w @ x**4 == pytest.approx(3.0 * SIZE_SPREAD**4)
+    assert w @ x**2 == pytest.approx(RULES.size_spread**2)
+    assert w @ x**4 == pytest.approx(3.0 * RULES.size_spread**4)
 
 
 def test_each_striker_has_the_error_of_its_own_contact() -> None:
