@@ -18,17 +18,11 @@ if TYPE_CHECKING:
     from .pair import Solved, case
 
 _FROM = {
-    "Diagnosis": "diagnosis",
-    "LawComparison": "comparison",
-    "Material": "checked",
-    "Pair": "checked",
-    "Solved": "pair",
-    "case": "pair",
-    "compare_laws": "comparison",
-    "diagnose": "diagnosis",
-    "impact": "blows",
-    "material": "checked",
-    "sweep": "blows",
+    "blows": ("impact", "sweep"),
+    "checked": ("Material", "Pair", "material"),
+    "comparison": ("LawComparison", "compare_laws"),
+    "diagnosis": ("Diagnosis", "diagnose"),
+    "pair": ("Solved", "case"),
 }
 
 __all__ = [
@@ -39,8 +33,9 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a name when it is first asked for."""
-    if name in _FROM:
-        return getattr(import_module(f"{__name__}.{_FROM[name]}"), name)
+    for module, names in _FROM.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

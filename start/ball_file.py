@@ -14,33 +14,23 @@ from ..core.material import Pair
 from ..core.rig import value_of
 from ..dynamics.files.scenes import curves_in
 from ..dynamics.files.second import SecondSphere
-from ..dynamics.files.setup import FOLLOWING, Setup, setup_of
+from ..dynamics.files.setup import FOLLOWING, setup_of
 from ..models import LAWS
 from ..models.base import ContactLaw
 from ..models.turned import turned
-from .case_file import read_pair
+from .case_file import metal_keys, read_pair
 
-_BODY = ("E_Pa", "nu", "Sy_Pa", "rigid", "density_kg_m3", "flow_curve", "hardening")
-_LAWS = ("law", "K_Pa", "B_Pa", "Q_Pa", "n", "b")
-
-
-def _keys(table: str, *, of_impact: bool) -> set[str]:
-    found = {f"{table}.{name}" for name in _BODY}
-    found |= {f"{table}.hardening.{name}" for name in _LAWS}
-    return found | ({f"{table}.hardness_Pa"} if of_impact else set())
-
-
+_STRIKER = ("shape", "tip_radius_m", "mass_kg", "radius_m", "density_kg_m3", "hardness_Pa")
 _OF_IMPACT = (
-    (_keys("target", of_impact=True) - {"target.density_kg_m3"})
-    | _keys("strikers.NAME", of_impact=True)
-    | {f"strikers.NAME.{k}" for k in ("shape", "tip_radius_m", "mass_kg", "radius_m")}
-    | {"target.shape", "target.law", "friction.coefficient", "impact.striker"}
-    | {"impact.impact_speed_m_s", "impact.drop_height_m", "sweep.impact_speed_m_s", "gravity_m_s2"}
+    metal_keys("target") | metal_keys("strikers.NAME") | {f"strikers.NAME.{k}" for k in _STRIKER}
+    | {"target.shape", "target.law", "target.hardness_Pa", "friction.coefficient"}
+    | {"impact.striker", "impact.impact_speed_m_s", "impact.drop_height_m", "gravity_m_s2"}
+    | {"sweep.impact_speed_m_s"}
     | {f"sweep.impact_speed_m_s.{k}" for k in ("from", "to", "count", "spacing")}
-)
+)  # fmt: skip
 _OF_CASE = (
-    _keys("sphere", of_impact=False) | (_keys("flat", of_impact=False) - {"flat.density_kg_m3"})
-    | {"radius_m", "friction.coefficient"}
+    metal_keys("sphere") | metal_keys("flat")
+    | {"sphere.density_kg_m3", "radius_m", "friction.coefficient"}
 )  # fmt: skip
 
 
@@ -90,7 +80,8 @@ def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
 def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     setup = setup_of(dict(content), source=str(file))
     name = setup.striker
-    if setup.file.strikers[name].shape != "sphere":
+    ball = setup.file.strikers[name]
+    if ball.shape != "sphere":
         raise InputError(
             "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'
         )
@@ -101,19 +92,15 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
     if setup.second is not None:
         used = used | {"target.radius_m", "target.mass_kg", "target.density_kg_m3"}
+    unused = unused_keys(content, used)
+    radius = ball.radius_m
+    if radius is not None and not math.isclose(radius.value, ball.tip_radius_m.value):
+        # rounder or flatter at its tip than itself, it is one sphere to these codes
+        unused.append(f"strikers.{name}.radius_m = {radius.value:g} beside tip_radius_m")
     return ExportedBall(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
-        unused_keys(content, used) + _tip(setup, name), setup.second,
+        unused, setup.second,
     )  # fmt: skip
-
-
-def _tip(setup: Setup, name: str) -> list[str]:
-    """A ball whose tip is rounder or flatter than itself is one sphere to these codes."""
-    ball = setup.file.strikers[name]
-    radius = ball.radius_m
-    if radius is None or math.isclose(radius.value, ball.tip_radius_m.value):
-        return []
-    return [f"strikers.{name}.radius_m = {radius.value:g} beside tip_radius_m"]
 
 
 def _of_case(content: Mapping[str, Any], file: Path) -> ExportedBall:

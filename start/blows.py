@@ -92,7 +92,7 @@ def impact(
     """
     stated = _stated({k: v for k, v in locals().items() if k not in ("setup", "law")})
     chosen = _chosen(setup, stated)
-    return blow_of(chosen, _wanted(law) or [law_named(name) for name in chosen.laws])
+    return blow_of(chosen, _wanted(law, chosen))
 
 
 def sweep(
@@ -137,7 +137,7 @@ def sweep(
     chosen = _chosen(setup, first, sweep=values)
     if not chosen.sweep.count:
         raise InputError("no values", key="sweep", allowed="speed=[1.0, 2.0], angle_deg=..., ...")
-    laws = _wanted(law) or [law_named(name) for name in chosen.laws]
+    laws = _wanted(law, chosen)
     chosen.check_laws(laws)
     found, *others = (chosen.swept(one) for one in laws)
     for other in others:
@@ -157,8 +157,8 @@ def _stated(given: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _wanted(given: Laws) -> list[ContactLaw]:
-    """The laws that were asked for, by name or as they are, each once."""
+def _wanted(given: Laws, setup: Setup) -> list[ContactLaw]:
+    """The laws that were asked for, by name or as they are, each once; else the set-up's."""
     found: dict[str, ContactLaw] = {}
     for one in [given] if isinstance(given, str) or not isinstance(given, Iterable) else given:
         if not isinstance(one, str | ContactLaw):
@@ -166,7 +166,7 @@ def _wanted(given: Laws) -> list[ContactLaw]:
         law = law_named(one) if isinstance(one, str) else one
         if found.setdefault(law.name, law) is not law:
             raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
-    return list(found.values())
+    return list(found.values()) or [law_named(name) for name in setup.laws]
 
 
 def _chosen(

@@ -122,6 +122,13 @@ class CaseFile(InputTable):
         return 4.0 / 3.0 * math.pi * self.radius_m**3 * value_of(self.sphere.density_kg_m3)
 
 
+def metal_keys(body: str) -> set[str]:
+    """Return the keys of a body by which a contact law knows its metal."""
+    own = ("E_Pa", "nu", "Sy_Pa", "rigid", "flow_curve")
+    hardening = (f"hardening.{key}" for key in ("law", "K_Pa", "B_Pa", "Q_Pa", "n", "b"))
+    return {f"{body}.{key}" for key in (*own, *hardening)}
+
+
 def read_flow_curve(path: Path) -> FlowCurve:
     """Read a table of true stress over plastic strain, from 0 on: plastic_strain and stress_Pa.
 

@@ -20,29 +20,16 @@ from ..core.tables import frame, html_table, text_table
 from ..models import LAWS, DomainWarning, law_named
 from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
-from .case_file import read_pair
-from .judged import ELASTIC, USABLE, Departure, Reference, judged
+from .case_file import metal_keys, read_pair
+from .judged import CURVE_POINTS, ELASTIC, USABLE, Departure, Reference, judged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-from .judged import CURVE_POINTS
-
 # limit: laws that are recommended [-]
 _RECOMMENDED = 4
 
-
-USED = frozenset(
-    {"radius_m", "load.max_delta_over_R"}
-    | {
-        f"{body}.{key}"
-        for body in ("sphere", "flat")
-        for key in (
-            "E_Pa", "nu", "Sy_Pa", "rigid", "flow_curve", "hardening.law", "hardening.K_Pa",
-            "hardening.B_Pa", "hardening.Q_Pa", "hardening.n", "hardening.b",
-        )
-    }
-)  # fmt: skip
+USED = metal_keys("sphere") | metal_keys("flat") | {"radius_m", "load.max_delta_over_R"}
 """Keys of CASE.toml that a law answers for."""
 
 
@@ -63,19 +50,12 @@ class LawRow(NamedTuple):
 class LawComparison:
     """Laws on one pair, those to use first.
 
-    Parameters
-    ----------
-    pair, need
-        The two bodies, and what they ask of a law at the largest depth.
-    best
-        Names of the laws to use, best first.
-    reference
-        The solved pair that they are judged by; none where nothing yields, and Hertz's force with
-        finite strain added is the judge.
-    departures
-        By law, how far it is from the finite elements of that pair, or from that force.
-    rows
-        Every law from below first yield to the largest depth.
+    - `pair`, `need`: the two bodies, and what they ask of a law at the largest depth.
+    - `best`: names of the laws to use, best first.
+    - `reference`: the solved pair that they are judged by; none where nothing yields, and Hertz's
+      force with finite strain added is the judge.
+    - `departures`: by law, how far it is from the finite elements of that pair, or from that force.
+    - `rows`: every law from below first yield to the largest depth.
     """
 
     pair: Pair
@@ -90,10 +70,8 @@ class LawComparison:
         """Which laws to use, and what the pair asks of them."""
         last = self.rows[-1].delta_over_R
         use = ", ".join(f"{name} ({self.told(name)})" for name in self.best)
-        by, deep = (
-            f"; judged at all depths by {ELASTIC}",
-            f"{self.need.w:.4g} times the depth of first yield",
-        )
+        by = f"; judged at all depths by {ELASTIC}"
+        deep = f"{self.need.w:.4g} times the depth of first yield"
         if not np.isfinite(self.pair.Sy_min):
             deep = "neither body yields"
         if self.reference:
@@ -205,11 +183,8 @@ def _best(
     # where a metal hardens, a law that does not know it is near by chance
     known = [law.name for law in laws if pair.perfectly_plastic or follows_flow(law)]
     near = [name for name in known if name in departures and departures[name].worst <= USABLE]
-    return tuple(
-        sorted(near, key=lambda name: (round(departures[name].worst, 3), name != "fitted"))[
-            :_RECOMMENDED
-        ]
-    )
+    near.sort(key=lambda name: (round(departures[name].worst, 3), name != "fitted"))
+    return tuple(near[:_RECOMMENDED])
 
 
 def _elastic(departures: dict[str, Departure]) -> tuple[str, ...]:
@@ -250,18 +225,11 @@ def drawn(found: LawComparison) -> Figure:
     others = [name for name in names if name not in found.best]
     for k, name in enumerate((*others, *reversed(found.best))):
         x, d, force, a, p, s, f = np.array([r[1:] for r in found.rows if r.law == name]).T
-        best = name in found.best
-        look = (
+        look: dict[str, Any] = {"color": "0.75", "lw": 0.9, "label": None if k else "others"}
+        if name in found.best:
             # a law that hides another lies on it as the thinner line
-            {
-                "color": f"C{(i := found.best.index(name))}",
-                "lw": 2.0 + 1.5 * i,
-                "label": name,
-                "zorder": 3.0,
-            }
-            if best
-            else {"color": "0.75", "lw": 0.9, "label": "others" if k == 0 else None}
-        )
+            i = found.best.index(name)
+            look = {"color": f"C{i}", "lw": 2.0 + 1.5 * i, "label": name, "zorder": 3.0}
         for axis, y in zip(
             axes.flat, (force / (stiffness * d**1.5), p, a / pair.R, (s + f) / d), strict=True
         ):

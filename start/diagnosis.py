@@ -28,12 +28,8 @@ if TYPE_CHECKING:
 class Diagnosis:
     """A verdict and how it is told.
 
-    Parameters
-    ----------
-    verdict
-        All numbers: `verdict.verdict`, `verdict.probabilities`, `verdict.to_dict()`, ...
-    story
-        The same in sentences and tables, as the report has them.
+    - `verdict`: all numbers: `verdict.verdict`, `verdict.probabilities`, `verdict.to_dict()`, ...
+    - `story`: the same in sentences and tables, as the report has them.
     """
 
     verdict: Verdict

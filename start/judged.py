@@ -46,7 +46,6 @@ CURVE_POINTS = 120
 # limit: times too little or too much that are not told in times [-]
 _NO_FACTOR = 100.0
 
-
 ELASTIC = "Hertz's force, finite strain added"
 """The judge while nothing yields: within 1 % of finite elements at Delta/R = 0.04."""
 
@@ -175,13 +174,9 @@ def _groups(pair: Pair) -> Array:
     ratio = min(max(pair.Sy_ratio, 1.0 / _UNEVEN_STRENGTHS), _UNEVEN_STRENGTHS)
     groups = [
         math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
-        (pair.elastic_share - 0.5) / 0.22, (_nu(pair.weaker) - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
+        (pair.elastic_share - 0.5) / 0.22, (pair.weaker.nu - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
     ]  # fmt: skip
     return np.array(groups)
-
-
-def _nu(body: Material) -> float:
-    return 0.3 if body.rigid else body.nu
 
 
 def _rise(body: Material) -> float:
@@ -207,15 +202,9 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
         rows.append(
             (depth, u.residual_sphere + u.residual_flat, math.sqrt(max(returned, 0.0) / taken))
         )
-    return Reference(
-        pair,
-        record.case.name,
-        distance,
-        c["delta"][inside],
-        c["force"][inside],
-        tuple(rows),
-        float(c["delta"][-1]) / pair.R * (1.0 + 1e-9),
-    )
+    deepest = float(c["delta"][-1]) / pair.R * (1.0 + 1e-9)
+    loaded, carried = c["delta"][inside], c["force"][inside]
+    return Reference(pair, record.case.name, distance, loaded, carried, tuple(rows), deepest)
 
 
 def judged(

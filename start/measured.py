@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 # limit: part of the approach below which nothing is permanent [-]: round-off
 _KEPT_ROUND_OFF = 1e-9
 
-
 _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 
 
@@ -74,11 +73,9 @@ class Dent:
             f"unloaded from Delta/R = {self.depth:.4g}: left in the sphere {sphere:.4g} um, in the "
             f"flat {flat:.4g} um; {self.energy_returned:.1%} of the energy returned"
         )
-        rim = (
-            "no rim"
-            if math.isnan(self.rim_diameter)
-            else (f"{_length(self.rim_diameter)} by rim, {1e6 * self.rim_height:.3g} um high")
-        )
+        rim = "no rim"
+        if not math.isnan(self.rim_diameter):
+            rim = f"{_length(self.rim_diameter)} by rim, {1e6 * self.rim_height:.3g} um high"
         hardness = [
             f"HB {x:.0f} by {name}"
             for name, x in (("contact", self.brinell_by_contact), ("rim", self.brinell_by_rim))
@@ -114,11 +111,9 @@ class MeasuredContact:
         if first is None:
             yield "neither body yields"
         else:
-            speed = (
-                ""
-                if math.isnan(mass)
-                else (f", {first.speed(mass):.3g} m/s for the ball's {1e3 * mass:.4g} g")
-            )
+            speed = ""
+            if not math.isnan(mass):
+                speed = f", {first.speed(mass):.3g} m/s for the ball's {1e3 * mass:.4g} g"
             yield f"first yield: {1e6 * first.depth:.3g} um, {first.load:.3g} N{speed}"
         if at is not None:
             yield (

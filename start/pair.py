@@ -26,25 +26,14 @@ if TYPE_CHECKING:
 # limit: approach over R of a pair whose depth is not said [-]: shallow enough for a quick solve
 _DEPTH = 0.01
 
-Report = Callable[[float], None]
-
-
-def _silent(done: float) -> None:
-    """Tell nobody."""
-
 
 @dataclass(frozen=True)
 class Solved:
     """A solved pair.
 
-    Parameters
-    ----------
-    solution
-        Curves, unloadings, fields.
-    uncertainty
-        Of the loading, what its level is off; none where the solve did not begin.
-    level
-        How finely it was solved; "smoke" is coarse, for a first look.
+    - `solution`: curves, unloadings, fields.
+    - `uncertainty`: of the loading, what its level is off; none where the solve did not begin.
+    - `level`: how finely it was solved; "smoke" is coarse, for a first look.
     """
 
     solution: fem.Solution
@@ -86,7 +75,7 @@ class Solved:
         """Return force, contact radius, the sphere's share and the mean pressure."""
         made, grid = figure(2, 2, size=(9.0, 6.6))
         pair, c, u = self.solution.problem.pair, self.solution.loading, self.uncertainty
-        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+        strength = self._scales["Sy_min"]
         over = "weaker strength" if pair.Sy_min < float("inf") else "E'"
         panels: tuple[tuple[Any, Any, str, list[Any]], ...] = (
             (c.force, u.force, "force [N]", [one.curve.force for one in self.solution.unloadings]),
@@ -142,14 +131,12 @@ class Solved:
             picture, path = section(one, **self._scales), Path(f"{name}.png")
             made.append(write_figure(picture, path, dpi=140, bbox_inches="tight"))
             if cut:
-                space = Path(f"{name}-cut.png")
-                made.append(draw_cutaway(one, space, **self._scales))
+                made.append(draw_cutaway(one, Path(f"{name}-cut.png"), **self._scales))
         return [path for path in made if path is not None]
 
     def _shown(self) -> list[list[str]]:
         rows = self.rows()
-        step = max(1, len(rows) // 12)
-        cells = [[f"{x:.4g}" for x in row.values()] for row in rows[::step]]
+        cells = [[f"{x:.4g}" for x in row.values()] for row in rows[:: max(1, len(rows) // 12)]]
         return [list(rows[0]), *cells] if rows else [["no depth was reached"]]
 
     def __repr__(self) -> str:
@@ -208,7 +195,10 @@ def case(
     return solved(problem, accuracy)
 
 
-def solved(problem: fem.ContactProblem, accuracy: fem.Accuracy, report: Report = _silent) -> Solved:
+def solved(
+    problem: fem.ContactProblem, accuracy: fem.Accuracy,
+    report: Callable[[float], None] = lambda _: None,
+) -> Solved:  # fmt: skip
     """Solve a pair and state its uncertainty; `report` is told how far it is, from 0 to 1."""
     solution = fem.solve(problem, accuracy=accuracy, progress=report)
     if len(solution.loading.delta) == 0:
