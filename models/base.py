@@ -242,6 +242,11 @@ def remembering(law: Law) -> Law:
     return kept
 
 
+def _no_numbers(_common: Common) -> Sequence[float]:
+    # no lambda: a law crosses processes
+    return ()
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PublishedLaw(ContactLaw):
     """A law given by its four kernels and, where they need some, numbers of its own.
@@ -251,7 +256,7 @@ class PublishedLaw(ContactLaw):
     """
 
     own: Kernels
-    numbers: Callable[[Common], Sequence[float]] = lambda _common: ()
+    numbers: Callable[[Common], Sequence[float]] = _no_numbers
 
     @property
     def kernels(self) -> Kernels:

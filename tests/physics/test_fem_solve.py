@@ -8,7 +8,7 @@ import pytest
 from dentscope import fem
 from dentscope.core import InputError, Material, Pair
 from dentscope.core.flow import Flow, Rate, swift
-from dentscope.fem.newton import TOLERANCE
+from dentscope.fem.rules import RULES
 from dentscope.studies.verification.checks.friction import stuck_ratios
 
 pytestmark = pytest.mark.fe
@@ -84,7 +84,7 @@ def test_balances(equal_strengths):
     c = equal_strengths.loading
     assert equal_strengths.outcome.completed
     assert np.abs(c.energy_defect).max() < 0.01
-    assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < TOLERANCE
+    assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < RULES.residual
     assert np.all(np.diff(c.dissipated) >= 0.0)
     assert np.all(np.diff(c.force) > 0.0)
 
@@ -169,7 +169,7 @@ def test_a_metal_that_hardens_and_feels_the_rate_keeps_its_balances(equal_streng
     for solution in (slow, fast):
         c = solution.loading
         assert np.abs(c.energy_defect).max() < 0.012
-        assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < TOLERANCE
+        assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < RULES.residual
         assert np.all(np.diff(c.dissipated) >= 0.0)
         assert solution.unloadings[0].outcome.completed
 
@@ -241,4 +241,4 @@ def test_friction_keeps_the_balances_through_loading_and_unloading():
     assert solution.unloadings[0].outcome.completed
     # at this mesh; which steps fail decides by a tenth of it
     assert np.abs(solution.loading.energy_defect).max() < 0.02
-    assert np.abs(solution.loading.force_defect).max() < TOLERANCE
+    assert np.abs(solution.loading.force_defect).max() < RULES.residual

@@ -104,6 +104,7 @@ campaign repair|campaign reproduction --data nosuch|proof run --list nosuch
 proof score --list nosuch|proof page nosuch|proof sample s --kind nosuch|proof peers nosuch
 proof laws nosuch|proof interventions nosuch|challenge get pulse.csv
 challenge score nosuch pulse.csv|challenge ask nosuch one pulse.csv
+challenge seal nosuch pulse.csv
 """.strip()
     .replace("\n", "|")
     .split("|")
