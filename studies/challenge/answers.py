@@ -58,7 +58,7 @@ def _odds(table: TextTable, sets: Sequence[str], problems: Problems) -> dict[str
         if name not in known:
             unknown.setdefault(name, row)
             continue
-        whole = label(told)
+        whole = _label(told)
         odds = found.setdefault(name, {})
         if not whole:
             near = get_close_matches(told, EXPLANATIONS, n=1)
@@ -84,7 +84,7 @@ def _odds(table: TextTable, sets: Sequence[str], problems: Problems) -> dict[str
     return found
 
 
-def label(told: str) -> str:
+def _label(told: str) -> str:
     """Return a name as it is compared, a pair's parts in order; empty for what is none."""
     parts = sorted(part.strip() for part in told.split("+"))
     if len(parts) == 1:

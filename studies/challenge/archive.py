@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -71,6 +72,14 @@ def get(folder: Path) -> dict[str, int]:
             written.rename(folder / part)
         counts[part] = len(sets)
     return counts
+
+
+def seal_truths(path: Path, truths: Mapping[str, dict[str, Any]], sets: Path) -> None:
+    """Write the seals of truths by set, and of their recordings, which lie in `sets`."""
+    ledger = Ledger(path)
+    for name, record in truths.items():
+        digests = {"truth": digest_of_record(record), "recordings": digest_of(sets / name)}
+        ledger.add(event="truth", set=name, **digests)
 
 
 def sets_of(folder: Path) -> list[str]:

@@ -22,8 +22,7 @@ from ...core.output import write_file
 from ..proof.generators.effects import EFFECTS, OUTSIDE
 from ..proof.generators.folder import write_set
 from ..proof.generators.truth import Truth, draw
-from ..proof.seal import Ledger, digest_of, digest_of_record
-from .archive import DATA, PARTS, SEALS, SUMS, TRUTHS
+from .archive import DATA, PARTS, SEALS, SUMS, TRUTHS, seal_truths
 
 SIXTY = [("null", "")] * 12 + [("pair", "")] * 4
 SIXTY += [("single", name) for name in EFFECTS for _ in range(2)]
@@ -89,12 +88,7 @@ def publish(work: Path, to: Path = DATA) -> None:
     }
     (to / SEALS).unlink(missing_ok=True)
     to.mkdir(parents=True, exist_ok=True)
-    ledger = Ledger(to / SEALS)
-    for name, record in truths.items():
-        ledger.add(
-            event="truth", set=name, truth=digest_of_record(record),
-            recordings=digest_of(work / "sets" / name),
-        )  # fmt: skip
+    seal_truths(to / SEALS, truths, work / "sets")
     for part in PARTS:
         names = [name for name in truths if name.startswith(part)]
         files = {

@@ -73,7 +73,7 @@ def ask(
 @app.command()
 def seal(
     folder: Annotated[Path, typer.Argument(help="Of your sets: FOLDER/sets/NAME.")],
-    acts: Annotated[Path, typer.Argument(help="Table: set, name of what acts.")],
+    acts: Annotated[Path, typer.Argument(help="Table: set, name of what acts, 1.")],
     truths: Annotated[
         Path | None, typer.Option(help="New file for the truths; default: FOLDER-truths.json.")
     ] = None,
