@@ -123,7 +123,7 @@ def _sweep(
         written.append(drawn)
     for name in swept_in_vain(setup.sweep.swept, curves):
         say(f"sweep.{name} changes nothing here")
-    if find_spec("pandas") and find_spec("pyarrow"):
+    if find_spec("pyarrow"):
         first.to_parquet(parquet)
         written.append(parquet)
     return written, int((first["outcome"] != "completed").sum()), "\n".join(told)

@@ -103,5 +103,5 @@ class Impacts:
         return draw_sweep(self.swept, {law: Impacts(columns) for law, columns in each.items()})
 
     def to_parquet(self, path: Path | str) -> None:
-        """Write a Parquet file; refused without pandas or pyarrow."""
+        """Write a Parquet file; refused without pyarrow."""
         write_file(Path(path), parquet(self.columns))
