@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -183,9 +184,20 @@ def told(rng: np.random.Generator, rig: Rig, names: tuple[str, ...]) -> Rig:
     plate = {"thickness_m": float(np.exp(rng.uniform(*np.log(_THIN))))}
     moves = rig.bench in EFFECTS["support-compliance"].benches
     block = {"thickness_m": BLOCK} if rng.random() < 0.5 and not moves else {}
-    viscosity = float(np.exp(rng.uniform(*np.log(_LIQUID))))
+    viscosity = min(float(np.exp(rng.uniform(*np.log(_LIQUID)))), _thinnest(rig))
     thickness = plate if tells("half-space-waves", DECOYS) and thin else block
     return replace(rig, drop=drop, told=rig.told | thickness, liquid=viscosity if wet else 0.0)
+
+
+def _thinnest(rig: Rig) -> float:
+    """Viscosity of a film in which the slowest ball loses half of its speed [Pa s].
+
+    From 30 to 0.1 um a film takes 6 pi eta R^2 ln(300)/m of a speed; a ball that stays in it does
+    not rebound.
+    """
+    bodies = [rig.strikers[k] for k in rig.which]
+    least = min(b.mass * v / b.tip_radius**2 for b, v in zip(bodies, rig.speed, strict=True))
+    return float(0.5 * least / (6.0 * math.pi * math.log(300.0)))
 
 
 def _planted(rng: np.random.Generator, kind: str, family: str, instrument: Instrument) -> Truth:
