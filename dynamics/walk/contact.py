@@ -156,9 +156,11 @@ def _contact_of(m, w, z, seen):
         ploughing = body[at.PLOUGH] * 4.0 / (3.0 * math.pi) * a / body[at.TIP]
     seen[at.STATIC] = f
     if force[fo.RADIATION] != 0.0:
-        # the waves' power is kappa (dF/dt)^2
+        # the waves' power is kappa (dF/dt)^2, at the rate that a plate leaves of the approach's
         slope = slope_of(m, branch, depth, int(phase))
-        waves = force[fo.RADIATION] * slope * slope * seen[at.RATE]
+        resists = force[fo.RADIATION] * slope * slope
+        waves = resists * (seen[at.RATE] - body[at.S_PLATE] * f)
+        waves /= 1.0 + resists * body[at.S_PLATE]
         f += waves
     if force[fo.DAMPING] != 0.0:
         f += f * force[fo.DAMPING] * seen[at.RATE]

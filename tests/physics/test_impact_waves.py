@@ -180,6 +180,19 @@ def test_half_space_takes_hunters_share() -> None:
     assert 1.0 - impact.restitution**2 == pytest.approx(1.04 * (1.0 / c0) ** 0.6, rel=0.1)
 
 
+def test_waves_beneath_a_plate_that_gives_way_take_energy_and_give_none() -> None:
+    """A plate that runs ahead of the sphere ends the indentation: what waves take ends there."""
+    scene = scene_of(
+        LAWS["fitted"], sphere=STEEL.with_(Sy=1.2e9), flat=STEEL.with_(Sy=4e8),
+        striker=Striker(mass=0.0041, tip_radius=0.005), approach=Approach(20.0), gravity=0.0,
+        support=plate_support(STEEL, thickness=0.001),
+    )  # fmt: skip
+    scene = scene.with_(force=type(scene.force)(radiation=half_space_radiation(STEEL)))
+    impact = strike(scene)
+    assert impact.radiated_J > 0.0
+    assert abs(impact.energy_residual) < 1e-8
+
+
 def test_a_growing_dent_sends_waves_by_the_slope_of_its_own_force() -> None:
     """F exceeds the law's by kappa (dF/d(depth))^2 d', with the law's exact derivative."""
     law, kappa = LAWS["fitted"], half_space_radiation(STEEL)
