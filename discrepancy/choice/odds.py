@@ -83,6 +83,7 @@ def odds_of(
         # fits as well as the better of the two, until it is fitted
         own = [beside[name] for name in names[label] if name in beside]
         beside[label] = min(own, default=0.0)
+    beside = {label: further(gained[label], odds) for label, odds in beside.items()}
     unseen = [
         log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0) for label, odds in beside.items()
     ]
@@ -111,6 +112,11 @@ def tempered(gain: float) -> float:
     """Return what a gain in ln evidence counts [nat]."""
     G = RULES.by_ratio
     return RULES.temper * (G * math.log1p(gain / G) if gain > 0.0 else gain)
+
+
+def further(gain: float, more: float) -> float:
+    """Return what something gains beside an explanation with a gain: as `tempered` counts both."""
+    return tempered(gain + more) - tempered(gain) if more > 0.0 else more
 
 
 @dataclass(frozen=True)
