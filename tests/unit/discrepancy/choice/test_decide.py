@@ -7,7 +7,15 @@ from types import SimpleNamespace
 import pytest
 from dentscope.discrepancy.choice.decide import decide
 from dentscope.discrepancy.choice.families import family_of
-from dentscope.discrepancy.choice.odds import OUTSIDE, PRIORS, Odds, odds_of, prior_shares, tempered
+from dentscope.discrepancy.choice.odds import (
+    OUTSIDE,
+    PRIORS,
+    Odds,
+    further,
+    odds_of,
+    prior_shares,
+    tempered,
+)
 from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.repeats import Drift
@@ -156,8 +164,8 @@ def singles_of(toy, *lifts: float):
 def test_a_gain_is_tempered_and_of_thousands_counts_by_its_share() -> None:
     assert tempered(-3.0) == pytest.approx(-3.0 * RULES.temper)
     assert tempered(10.0) == pytest.approx(10.0 * RULES.temper, rel=0.01)
-    more = RULES.temper * RULES.by_ratio * math.log(100_100 / 100_000)
-    assert tempered(1e5 + 100.0) - tempered(1e5) == pytest.approx(more, rel=0.02)
+    more = RULES.temper * RULES.by_ratio * math.log(1_000_100 / 1_000_000)
+    assert tempered(1e6 + 100.0) - tempered(1e6) == pytest.approx(more, rel=0.02)
 
 
 def test_probabilities_are_prior_times_tempered_evidence(toy) -> None:
@@ -230,9 +238,17 @@ def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy
     fits = odds_of(ranking, beside={"a": 0.0, "b": 0.0})
     found = odds_of(ranking, beside={"a": math.log(200.0), "b": 0.0})
     share = found.probability["a"] / found.probability["b"]
-    assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / 200.0)
-    outside = PRIORS[OUTSIDE] * (200.0 * found.probability["a"] + found.probability["b"])
+    lost = math.exp(further(30.0, math.log(200.0)))
+    assert lost == pytest.approx(200.0**RULES.temper, rel=0.06)
+    assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / lost)
+    outside = PRIORS[OUTSIDE] * (lost * found.probability["a"] + found.probability["b"])
     assert found.probability[OUTSIDE] == pytest.approx(outside, rel=1e-3)
+
+
+def test_what_little_an_explanation_of_thousands_leaves_counts_by_its_share() -> None:
+    assert further(RULES.by_ratio, 20.0) == pytest.approx(RULES.temper * 10.0, rel=0.01)
+    assert further(100.0 * RULES.by_ratio, 20.0) < 0.2
+    assert further(30.0, -0.7) == -0.7
 
 
 def test_a_pair_without_a_fit_counts_by_its_screening_and_fits_as_its_better_single(toy) -> None:
@@ -244,7 +260,8 @@ def test_a_pair_without_a_fit_counts_by_its_screening_and_fits_as_its_better_sin
     prior = PRIORS["second"] / 2.0
     ratio = prior * math.exp(tempered(40.0) - tempered(29.0))
     assert one["a+b"] / one["b"] == pytest.approx(ratio)
-    assert refuted["a+b"] / refuted["b"] == pytest.approx(ratio)
+    more = further(29.0, math.log(50.0)) - further(40.0, math.log(50.0))
+    assert refuted["a+b"] / refuted["b"] == pytest.approx(ratio * math.exp(more))
 
 
 def test_a_drift_that_is_sure_leaves_the_rest_to_something_outside(toy) -> None:
