@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from dentscope import recordings
-from dentscope.studies.proof.generators import effects, folder, truth
+from dentscope.studies.proof.generators import effects, folder, parameters, simulate, truth
 from dentscope.studies.proof.generators.benches import BENCHES
 
 KINDS = [
@@ -49,6 +49,17 @@ def test_liquids_plates_and_heights_are_told_where_they_do_not_act():
         (truth.DECOYS, sum(t[2].get("thickness_m", truth.BLOCK) < truth.BLOCK for t in told)),
     ):
         assert count / 400 == pytest.approx(share, abs=0.08)
+
+
+@pytest.mark.parametrize("bench", effects.EFFECTS["squeeze-film"].benches)
+def test_a_liquid_that_is_told_lets_every_ball_out_of_a_film(bench):
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        rig = truth.told(rng, BENCHES[bench](rng), ("squeeze-film",))
+        film = effects.EFFECTS["squeeze-film"].draw(rng, rig, parameters.CAVITY)
+        found = simulate.results_of(simulate.rows_of(rig, [film], family=parameters.CAVITY, z={}))
+        assert np.all(found[:, parameters.COMPLETED] == 1.0)
+        assert np.all(found[:, parameters.RESTITUTION] > 0.0)
 
 
 @pytest.mark.parametrize(("kind", "name"), KINDS)
