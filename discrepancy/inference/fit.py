@@ -24,6 +24,9 @@ from .grid import Axis, Grid, posterior
 from .linear import Linear, Mixture
 from .together import refined
 
+# limit: windows in a row that do no better, after which a fit is sharp [-]; time
+_IN_VAIN = 2
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -226,6 +229,8 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     their distance, neither the simulation between them nor the interval can be trusted. The window
     follows the most probable place, and shrinks to a few standard deviations about it.
 
+    It ends where two in a row do no better: places that both fit worse than the best take turns.
+
     `fitted`: a fit with mechanisms; `rounds`: largest number of windows, at least 1.
     """
     grid, z, place = fitted.grid, fitted.z, fitted.place
@@ -236,7 +241,7 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     if np.all(spread > np.maximum(RULES.resolved * share, node)) and not jumps:
         return fitted
     half = np.maximum(RULES.window * spread, 2.5 * share)
-    best = None
+    best, in_vain = None, 0
     for _ in range(max(rounds, 1)):
         low, high = np.maximum(place - half, 0.0), np.minimum(place + half, 1.0)
         window = tuple(zip(low.tolist(), high.tolist(), strict=True))
@@ -244,7 +249,11 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
         found = expand(simulator, fitted.mechanisms, local, z, place, None)
         # where outcomes bend or jump, a step may fall off the branch that the data are on
         if best is None or found.log_evidence > best.log_evidence:
-            best = found
+            best, in_vain = found, 0
+        else:
+            in_vain += 1
+        if in_vain == _IN_VAIN:
+            break
         wide = high - low
         outward = (
             ((found.place < low + 0.1 * wide) & (low > 0.0))
