@@ -23,7 +23,7 @@ def frame(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> Any:
 def parquet(table: Mapping[str, Any]) -> bytes:
     """Return columns by name as the content of a Parquet file; refused without pyarrow.
 
-    No number is a null, as pandas writes it.
+    A cell without a number is null, as pandas writes it.
     """
     if find_spec("pyarrow") is None:
         raise missing_extra("a Parquet file", "tables")
