@@ -184,16 +184,16 @@ def told(rng: np.random.Generator, rig: Rig, names: tuple[str, ...]) -> Rig:
     plate = {"thickness_m": float(np.exp(rng.uniform(*np.log(_THIN))))}
     moves = rig.bench in EFFECTS["support-compliance"].benches
     block = {"thickness_m": BLOCK} if rng.random() < 0.5 and not moves else {}
-    viscosity = min(float(np.exp(rng.uniform(*np.log(_LIQUID)))), _thinnest(rig))
+    viscosity = min(float(np.exp(rng.uniform(*np.log(_LIQUID)))), _largest_viscosity(rig))
     thickness = plate if tells("half-space-waves", DECOYS) and thin else block
     return replace(rig, drop=drop, told=rig.told | thickness, liquid=viscosity if wet else 0.0)
 
 
-def _thinnest(rig: Rig) -> float:
-    """Viscosity of a film in which the slowest ball loses half of its speed [Pa s].
+def _largest_viscosity(rig: Rig) -> float:
+    """Largest viscosity of a film that every ball leaves [Pa s]: the slowest loses half its speed.
 
-    From 30 to 0.1 um a film takes 6 pi eta R^2 ln(300)/m of a speed; a ball that stays in it does
-    not rebound.
+    From 30 to 0.1 um a film takes 6 pi eta R^2 ln(300)/m of a speed; what stays in it does not
+    rebound.
     """
     bodies = [rig.strikers[k] for k in rig.which]
     least = min(b.mass * v / b.tip_radius**2 for b, v in zip(bodies, rig.speed, strict=True))
