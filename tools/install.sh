@@ -53,6 +53,9 @@ fi
 say "installing the pinned packages of $lock (1.8 GB in .venv)"
 awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
 .venv/bin/python -m pip install -q --disable-pip-version-check --require-hashes -r .venv/uv.txt
+# behind a proxy that signs with its own certificate pip has been told of it; uv knows other names
+cert=${SSL_CERT_FILE:-${PIP_CERT:-${REQUESTS_CA_BUNDLE:-}}}
+if [ -n "$cert" ]; then export SSL_CERT_FILE=$cert; fi
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"
 # the build tool is pinned too: nothing outside the lock is fetched
 .venv/bin/uv pip install -q --python .venv/bin/python --no-deps --no-build-isolation -e .
