@@ -77,6 +77,11 @@ class FlowCurve:
         stress, slope = (tuple(factor * y for y in row) for row in (self.stress, self.slope))
         return FlowCurve(self.strain, stress, slope)
 
+    def drawn_together(self, factor: float) -> FlowCurve:
+        """Return the curve with its strains divided by `factor`."""
+        strain = tuple(x / factor for x in self.strain)
+        return FlowCurve(strain, self.stress, tuple(factor * y for y in self.slope))
+
     def __call__(self, strain: float) -> float:
         """Flow stress at a plastic strain [Pa]."""
         if strain >= self.strain[-1]:

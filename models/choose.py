@@ -14,7 +14,7 @@ from ..core.material import Pair
 from .base import CombinedLaw, ContactLaw
 from .hardening import HardeningLaw
 from .table import TableLaw
-from .turned import TurnedLaw
+from .turned import SimilarLaw, TurnedLaw
 
 # limit: ratio of strengths above which the flat alone is said to yield [-]
 _INDENTATION_ABOVE = 1.7
@@ -84,6 +84,6 @@ def follows_flow(law: ContactLaw) -> bool:
     """Whether a law follows the flow curve of a metal; others take its strength at first yield."""
     if isinstance(law, CombinedLaw):
         return follows_flow(law.first)
-    if isinstance(law, TurnedLaw):
+    if isinstance(law, TurnedLaw | SimilarLaw):
         return follows_flow(law.law)
     return isinstance(law, HardeningLaw | TableLaw)

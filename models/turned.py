@@ -1,8 +1,18 @@
-"""A law with sphere and flat in each other's place: the body that is struck is its sphere."""
+"""A law whose bodies stand otherwise: in each other's place, or two spheres in place of one.
+
+Turned, the body that is struck is the law's sphere.
+
+Small contacts depend on the radii by 1/R = 1/R_1 + 1/R_2 alone: with E, R and all lengths along the
+normal s, s and 1/s times as large, force, contact radius, pressure and first yield stay what they
+are. Large ones do not: the pressure of a ball that is flattened falls with the contact's size over
+its own radius R_1. Taken at s = R_1/R the law has both right, since its sphere is then as large as
+the ball. Where the other body yields, the law's flat, its sphere is the stiff indenter and s is 1.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -10,14 +20,19 @@ import numpy as np
 from numba import njit
 
 from ..core.arrays import Array
-from ..core.material import Pair
+from ..core.material import Material, Pair
 from .anchored import AnchoredLaw
 from .base import ContactLaw, Kernels
 from .driver import Depths, Pairs
-from .kernel import RESIDUAL_SIGNATURE
+from .fitted import ClosedForm
+from .hardening import HardeningLaw
+from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE
 from .table import TableLaw
 from .uncertainty import Uncertainty
 
+# limit: sphere's strength over the flat's from which on the flat alone yields [-]; finite elements
+# of two spheres at 1, 1.1, 1.25 and 3.3 (tools/benchmarks/two_spheres.py)
+_FLAT_ALONE = 1.2
 _REGIMES = {"flattening": "indentation", "indentation": "flattening"}
 
 
@@ -90,3 +105,94 @@ def _kernels(own: Kernels) -> Kernels:
         return flat, sphere
 
     return own._replace(residual=other_residual)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class SimilarLaw(ContactLaw):
+    """Another law at its sphere's own radius, `ratio` times R of the pair."""
+
+    law: ClosedForm | HardeningLaw
+    ratio: float
+
+    @property
+    def kernels(self) -> Kernels:
+        """Those of the law between depths of another scale."""
+        return _similar_kernels(self.law.kernels)
+
+    def scale(self, pair: Pair) -> float:
+        """How much larger the law is taken, s: `ratio` where its sphere is the weaker, else 1."""
+        apart = math.log(pair.Sy_ratio) if 0.0 < pair.Sy_ratio < math.inf else 0.0
+        flat = 1.0 if math.isinf(pair.Sy_ratio) else apart / math.log(_FLAT_ALONE)
+        return 1.0 + (self.ratio - 1.0) * (1.0 - min(max(flat, 0.0), 1.0))
+
+    def alike(self, pair: Pair) -> tuple[Pair, float]:
+        """The pair as the law is asked for it, and s."""
+        s = self.scale(pair)
+        return Pair(_stiffer(pair.sphere, s), _stiffer(pair.flat, s), s * pair.R), s
+
+    def parameters(self, pair: Pair) -> Array:
+        """The law's numbers of that pair, and s behind them, shape (n,)."""
+        other, s = self.alike(pair)
+        return np.append(self.law.parameters(other), s)
+
+    def share(self, pair: Pair, depth: Depths) -> Array:
+        """delta_s*, shape (...)."""
+        other, s = self.alike(pair)
+        return self.law.share(other, np.asarray(depth) / s)
+
+    def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
+        """How far off the law may be; as `ContactLaw.uncertainty`."""
+        other, s = self.alike(pair)
+        return self.law.uncertainty(other, np.asarray(depth) / s)
+
+    def warn_outside(self, pair: Pairs, depth: Depths) -> None:
+        """Warn where the law itself would."""
+        pairs = [pair] if isinstance(pair, Pair) else list(pair)
+        self.law.warn_outside([self.alike(p)[0] for p in pairs], depth)
+
+
+@lru_cache(maxsize=64)
+def similar(law: ContactLaw, ratio: float) -> ContactLaw:
+    """Return the law with a sphere of `ratio` times the radius R of the pair, 1/R that of both.
+
+    Published laws are left as their authors use them, by R alone, and so is a law of one solved
+    pair.
+    """
+    if ratio == 1.0 or not isinstance(law, ClosedForm | HardeningLaw):
+        return law
+    return SimilarLaw(**law.about, law=law, ratio=ratio)
+
+
+def _stiffer(body: Material, s: float) -> Material:
+    """The body s times as stiff, that hardens in strains 1/s as large."""
+    flow = body.flow
+    if flow is not None and flow.curve is not None:
+        flow = replace(flow, curve=flow.curve.drawn_together(s))
+    return body if body.rigid else body.with_(E=s * body.E, flow=flow)
+
+
+@lru_cache(maxsize=64)
+def _similar_kernels(own: Kernels) -> Kernels:
+    loading: Any = own.loading
+    radius: Any = own.radius
+    unloading: Any = own.unloading
+    residual: Any = own.residual
+
+    @njit(LOADING_SIGNATURE, _nrt=False)
+    def similar_loading(par, depth):  # type: ignore[no-untyped-def]
+        return loading(par[:-1], depth / par[-1])
+
+    @njit(BRANCH_SIGNATURE, _nrt=False)
+    def similar_radius(par, depth, peak):  # type: ignore[no-untyped-def]
+        return radius(par[:-1], depth / par[-1], peak / par[-1])
+
+    @njit(BRANCH_SIGNATURE, _nrt=False)
+    def similar_unloading(par, depth, peak):  # type: ignore[no-untyped-def]
+        return unloading(par[:-1], depth / par[-1], peak / par[-1])
+
+    @njit(RESIDUAL_SIGNATURE, _nrt=False)
+    def similar_residual(par, peak):  # type: ignore[no-untyped-def]
+        sphere, flat = residual(par[:-1], peak / par[-1])
+        return par[-1] * sphere, par[-1] * flat
+
+    return Kernels(similar_loading, similar_radius, similar_unloading, similar_residual)

@@ -17,7 +17,6 @@ from ..dynamics.files.second import SecondSphere
 from ..dynamics.files.setup import FOLLOWING, setup_of
 from ..models import LAWS
 from ..models.base import ContactLaw
-from ..models.turned import turned
 from .case_file import metal_keys, read_pair
 
 _STRIKER = ("shape", "tip_radius_m", "mass_kg", "radius_m", "density_kg_m3", "hardness_Pa")
@@ -47,9 +46,7 @@ class ExportedBall(NamedTuple):
 
     def by(self, law: ContactLaw) -> ContactLaw:
         """Return the law as `impact` has it: the smaller of two spheres is the law's."""
-        other = math.inf if self.second is None else self.second.radius
-        # 1/R = 1/R_1 + 1/R_2: the other one is the smaller where R is below half of it
-        return turned(law) if 0.0 < other < 2.0 * self.pair.R else law
+        return law if self.second is None else self.second.faced(law, self.pair.R)
 
 
 def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:

@@ -223,7 +223,7 @@ def _spread(scenes: Sequence[Scene], second: SecondSphere | None) -> Spread:
     law_part = _of_law(scenes[0], lost)
     if second is not None:
         depth = pair.R * np.exp(np.clip(_GRID, _FIRST, _LAST))
-        law_part["force"] = np.hypot(law_part["force"], second.departure(pair, depth))
+        law_part["force"] = np.hypot(law_part["force"], second.departure(law, pair, depth))
         law_part["crater"] = np.hypot(law_part["crater"], second.crater_departure(pair, depth))
     return Spread(law_part, metal, peaks)
 

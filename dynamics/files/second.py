@@ -5,17 +5,13 @@ of one sphere of radius R, 1/R = 1/R_1 + 1/R_2 (Hertz), and mass m, 1/m = 1/m_1 
 normal exactly, along the tangent for solid spheres, whose 1/m + r^2/I is 7/(2 m) whatever their
 size. A seat is a sphere of negative radius; a body that is held has no mass of its own.
 
-How far 1/R holds where both yield is known best of two equal spheres: they are each other's mirror,
-and so each is a sphere of its own on a rigid flat that is pressed half as deep. Finite elements of
-that sphere carry 3 % more at an approach of 0.02 R and 26 % more at 0.1 R than those of a sphere on
-a flat of its metal (E/341); the fitted law, which both sides are taken from, says so within 1.5 %.
-Finite elements of two spheres (tools/benchmarks/two_spheres.py, E/341, coarse) carry at 0.04 R with
-R_2 = 1, 1.5, 3, 6 and 20 R_1 6.8, 6.2, 4.3, 3.8 and 1.3 % more, at 0.02 R 2.4, 2.0, 2.1, 1.1 and
-0.7 %: as the root of R/R_2. In a seat of -3 R_1 they carry 1.1, 4.7 and 12.8 % less at 0.01, 0.02
-and 0.04 R, twice the mirror's departure.
-
 The smaller sphere, of the larger curvature, is the law's, whichever of the two strikes: the other
-one is the nearer to a flat.
+one is the nearer to a flat. Where both yield, our laws are taken at its own radius
+(`models.turned.similar`). Finite elements of two spheres (tools/benchmarks/two_spheres.py, E/300,
+quick, up to 0.05 R) with R_2 = 1, 1.4, 2 and 3 R_1 carry what the fitted law then says within 0.8 %
+where the smaller is the weaker or both are alike, where by 1/R alone they carry up to 10 % more; of
+a larger one that is the weaker 4.7 and 2.1 % less at R_2 = R_1 and 2 R_1; in a seat of -3 R_1
+(E/341) 0.5, 1 and 1.7 % less at 0.01, 0.02 and 0.04 R, by 1/R alone 13 %.
 """
 
 from __future__ import annotations
@@ -31,8 +27,8 @@ from ...core.inputs.rig_numbers import RigNumbers, solid_inertia
 from ...core.inputs.second_sphere import StruckSphere
 from ...core.material import Pair
 from ...models import LAWS
-from ...models.base import DomainWarning
-from ...models.turned import turned
+from ...models.base import ContactLaw, DomainWarning
+from ...models.turned import SimilarLaw, as_made, similar, turned
 from ..scene import Scene, Striker
 
 
@@ -47,8 +43,7 @@ class SecondSphere(StruckSphere):
         """
         striker = scene.striker
         R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
-        # the smaller sphere, of the larger curvature, is the law's: the other one is nearer a flat
-        law = turned(scene.law) if 0.0 < self.radius < striker.tip_radius else scene.law
+        law = self.faced(scene.law, R)
         # spin turns the surface as fast as before: r w
         spin = scene.approach.spin * striker.tip_radius / R
         one = Striker(
@@ -60,18 +55,42 @@ class SecondSphere(StruckSphere):
             striker=one, approach=replace(scene.approach, spin=spin),
         )  # fmt: skip
 
-    def departure(self, pair: Pair, delta: float | Array) -> Array:
-        """Return how far 1/R may be off where both yield: the force's part, relative, (...).
+    def faced(self, law: ContactLaw, R: float) -> ContactLaw:
+        """Return the law as the two face each other, R [m] that of both: the smaller has it."""
+        own = 1.0 / (1.0 / R - 1.0 / self.radius)
+        law = similar(law, self._smaller(R) / R)
+        return turned(law) if 0.0 < self.radius < own else law
 
-        The mirror's departure at the approach (...) [m] times the root of 2 R/R_2, R_2 of the
-        larger; in a seat twice that, and 4 R/|R_2| times it as the seat closes, which is chosen.
+    def _smaller(self, R: float) -> float:
+        """Radius of the sphere of the larger curvature, R being that of both [m]."""
+        own = 1.0 / (1.0 / R - 1.0 / self.radius)
+        return min(own, self.radius) if self.radius > 0.0 else own
+
+    def departure(self, law: ContactLaw, pair: Pair, delta: float | Array) -> Array:
+        """Return how far the force of a law of theirs may be off where both yield, relative, (...).
+
+        What the radius of the smaller sphere makes of two bodies of the weaker metal at the
+        approach (...) [m]. A law that has it keeps a seventh, for what finite elements differ by.
+        Where the larger one is the weaker it has not: of equal spheres either could be the law's,
+        and what that would change is kept, times (2 R/R_2)^2; all of it in a seat.
         """
+        # a film can leave no depth at all
+        depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
         if not math.isfinite(pair.Sy_min):
-            return np.zeros_like(np.asarray(delta, dtype=float))
-        other = self._other(pair.R)
-        size = math.sqrt(2.0 * other)
-        size = max(2.0 * size, 4.0 * other) if self.radius < 0.0 else size
-        return size * np.abs(mirror_error(pair, delta))
+            return np.zeros_like(depth)
+        own, there = as_made(law, pair)
+        radii = np.abs(radius_error(pair, depth, self._smaller(pair.R) / pair.R))
+        if not isinstance(own, SimilarLaw):
+            return np.asarray(radii)
+        flat = 1.0 - (own.scale(there) - 1.0) / (own.ratio - 1.0)
+        if self.radius > 0.0 and flat > 0.0:
+            fitted, equal = LAWS["fitted"], similar(LAWS["fitted"], 2.0)
+            with warnings.catch_warnings(action="ignore", category=DomainWarning):
+                either = equal.loading(there.turned, depth) / fitted.loading(there, depth) - 1.0
+            kept = (2.0 * self._other(pair.R)) ** 2 * np.abs(either)
+        else:
+            kept = radii
+        return np.asarray((1.0 - flat) / 7.0 * radii + flat * kept)
 
     def _other(self, R: float) -> float:
         """Curvature of the larger body over that of both, 1/R: 0 of a flat, 1/2 of equal ones."""
@@ -89,10 +108,11 @@ class SecondSphere(StruckSphere):
             return np.zeros_like(depth)
         with warnings.catch_warnings(action="ignore", category=DomainWarning):
             # a rigid partner is beyond the strengths that were fitted
-            _, as_flat = LAWS["fitted"].residual(pair, depth)
-            as_sphere, _ = LAWS["fitted"].residual(pair.turned, depth)
-        stays = (as_flat > 0.0) & (as_sphere > 0.0)
-        apart = np.log(np.where(stays, as_flat, 1.0) / np.where(stays, as_sphere, 1.0))
+            ball, as_flat = LAWS["fitted"].residual(pair, depth)
+            as_sphere, other = LAWS["fitted"].residual(pair.turned, depth)
+        # a body that keeps next to nothing either way has no share to be unsure of
+        least = 0.01 * (ball + as_flat + as_sphere + other) + 1e-12 * pair.R
+        apart = np.log(np.maximum(as_flat, least) / np.maximum(as_sphere, least))
         return np.asarray(self._other(pair.R) * np.abs(apart))
 
 
@@ -104,17 +124,16 @@ def second_of(numbers: RigNumbers) -> SecondSphere | None:
     return SecondSphere(radius, numbers.of.get("target.mass_kg", math.inf))
 
 
-def mirror_error(pair: Pair, delta: float | Array) -> Array:
-    """Return how much more two equal spheres carry than one on a flat is said to, relative, (...).
+def radius_error(pair: Pair, delta: float | Array, ratio: float) -> Array:
+    """Return how much more two spheres carry than one on a flat is said to, relative, (...).
 
-    Sphere and flat of radius R are both taken to be of the weaker metal; `delta` (...) [m].
+    Both of the weaker metal of the pair; `delta` (...) [m]; `ratio`: radius of the smaller over R.
     """
-    law, body = LAWS["fitted"], pair.weaker
-    both = Pair(body, body, pair.R)
-    # one of two equal spheres, R being half of its radius, on what mirrors it: a rigid flat
-    half = Pair(body, body.with_(rigid=True), 2.0 * pair.R)
+    both = Pair(pair.weaker, pair.weaker, pair.R)
     # a film can leave no depth at all
     depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
     with warnings.catch_warnings(action="ignore", category=DomainWarning):
-        # a rigid partner is beyond the strengths that were fitted
-        return np.asarray(law.loading(half, 0.5 * depth) / law.loading(both, depth) - 1.0)
+        one, two = (
+            law.loading(both, depth) for law in (LAWS["fitted"], similar(LAWS["fitted"], ratio))
+        )
+    return np.asarray(two / one - 1.0)

@@ -61,13 +61,14 @@ PRESSURE = "largest_mean_pressure_Pa"
 
 
 class _Sizes(NamedTuple):
-    """Standard deviations of the logarithms, of the exponent absolute."""
+    """Standard deviations of the logarithms, of exponent and sphere's share absolute."""
 
     force: float
     recovery: float
     exponent: float
     crater: float
     radius: float
+    share: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -231,8 +232,9 @@ def _sizes_of(setup: Setup, scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     of_law, of_metal = _sizes(scene, found)
     if setup.second is not None:
         at = scene.pair, found.peak_depth_m
+        off = setup.second.departure(scene.law, *at)
         of_law = of_law._replace(
-            force=math.hypot(of_law.force, float(setup.second.departure(*at))),
+            force=math.hypot(of_law.force, float(off)),
             crater=math.hypot(of_law.crater, float(setup.second.crater_departure(*at))),
         )
     return of_law, of_metal
@@ -252,16 +254,16 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
         error = RULES.hertz_error + pair.elastic_share * x * (first + second * x)
         return _Sizes(error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     known = error_of(law, pair, np.array([found.peak_depth_m]))
-    force, radius, dent, back = (
+    force, radius, dent, back, share = (
         min(float(np.nan_to_num(x[0], nan=_LARGEST_ERROR)), _LARGEST_ERROR)
-        for x in (known.force, known.radius, known.dent, known.given_back)
+        for x in (known.force, known.radius, known.dent, known.given_back, known.share)
     )
     sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL
     if not found.residual_flat_m + found.residual_sphere_m > 0.0:
         # a law that leaves no crater has none that could be off, nor a recovery of its own
         return _Sizes(force, 0.0, 0.0, 0.0, radius), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     return (
-        _Sizes(force, back, RECOVERY_EXPONENT * lost, dent, radius),
+        _Sizes(force, back, RECOVERY_EXPONENT * lost, dent, radius, share),
         _Sizes(
             sizes["force"] * lost, sizes["recovery"] * lost, sizes["recovery exponent"] * lost,
             sizes["crater"] if lost else 0.0, 0.0,
@@ -331,7 +333,7 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
             for name in SWEPT:
                 by = (s * slope[name][row] for s, slope in zip(part, slopes, strict=False))
                 variance[name][row] += sum(x * x for x in by)
-            variance[_CRATER][row] += (part.crater * values[_CRATER]) ** 2
+            variance[_CRATER][row] += _parted(part, values[_CRATER], values["peak_depth_m"]) ** 2
         if not compared(law, scene, values["peak_depth_m"]):
             for name in SWEPT:
                 variance[name][row] = math.nan
@@ -346,5 +348,14 @@ def _combined(sizes: _Sizes, slopes: list[dict[str, float]], found: Impact) -> d
         for n in _NUMBERS
     }
     for name in ("residual_flat_m", "residual_sphere_m"):
-        out[name] = math.hypot(out[name], sizes.crater * getattr(found, name))
+        own = _parted(sizes, getattr(found, name), found.peak_depth_m)
+        out[name] = math.hypot(out[name], own)
     return out
+
+
+def _parted(sizes: _Sizes, left: float, peak: float) -> float:
+    """How far off a body's dent is beside the force's part, by the sum of both and its share [m].
+
+    A law gives a body of no strength no dent.
+    """
+    return math.hypot(sizes.crater * left, sizes.share * peak) if left > 0.0 else 0.0

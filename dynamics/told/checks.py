@@ -293,10 +293,10 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"with {other:.4g} m/s"
         )
     if scene.approach.speed > first_yield_speed(scene):
-        off = float(second.departure(scene.pair, found.peak_depth_m))
+        off = float(second.departure(scene.law, scene.pair, found.peak_depth_m))
         yield (
-            f"beyond yield 1/R is an approximation, off by some {100.0 * off:.2g} % of the force "
-            "here, as finite elements have it"
+            f"beyond yield two spheres are not quite one of R: off by some {100.0 * off:.2g} % of "
+            "the force here, as finite elements have it"
         )
     if second.radius < 0.0:
         a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))

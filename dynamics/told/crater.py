@@ -14,7 +14,6 @@ from ...models.turned import TurnedLaw
 from ..result import Impact
 from ..scene import Scene
 from ..surface import Imprint
-from .beside import error_of
 
 
 class LeftSurface(NamedTuple):
@@ -60,15 +59,10 @@ def surfaces_left(
     bodies: tuple[tuple[Body, str], ...] = (
         ("flat", "residual_flat_m"), ("sphere", "residual_sphere_m"),
     )  # fmt: skip
-    shared = 0.0
-    if std is not None:
-        # how far off the law may part the approach between the bodies, so what stays in each
-        share = error_of(scene.law, scene.pair, np.array([peak])).share
-        shared = peak * float(np.nan_to_num(share[0]))
     return [
         _surface(
             scene, left, body, mark if body == dented else None,
-            None if std is None else math.hypot(std(name), shared), edged=edged,
+            None if std is None else std(name), edged=edged,
         )
         for body, name in bodies
         # a law gives a body of no strength nothing but roundings, or is out of its range

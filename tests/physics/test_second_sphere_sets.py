@@ -93,7 +93,7 @@ def test_the_laws_error_is_that_of_two_spheres(tmp_path):
     second, pair = SecondSphere(-0.015), scenes[0].pair
     depth = pair.R * np.exp(here.reached)
     for kind, added in (
-        ("force", second.departure(pair, depth)),
+        ("force", second.departure(scenes[0].law, pair, depth)),
         ("crater", second.crater_departure(pair, depth)),
     ):
         both, own = here.at_peaks(here.law, kind), plain.at_peaks(plain.law, kind)

@@ -57,14 +57,14 @@ def test_hertz_is_right_to_three_thousandths_and_what_a_ball_adds():
 def test_no_law_is_off_by_more_than_a_logarithm_of_one():
     known = SimpleNamespace(
         force=np.array([5.0]), radius=np.array([5.0]), dent=np.array([5.0]),
-        given_back=np.array([math.nan]),
+        given_back=np.array([math.nan]), share=np.array([5.0]),
     )  # fmt: skip
     law = SimpleNamespace(name="mine", uncertainty=lambda pair, depth: known)
     at = SimpleNamespace(
         energetic_restitution=0.5, peak_depth_m=1e-5, residual_flat_m=1e-6, residual_sphere_m=0.0
     )
     found, _ = _sizes(SimpleNamespace(pair=scene().pair, law=law), at)
-    assert (found.force, found.recovery, found.crater, found.radius) == (1.0,) * 4
+    assert (found.force, found.recovery, found.crater, found.radius, found.share) == (1.0,) * 5
 
 
 @pytest.mark.parametrize(("std", "share"), [(0.04, 1.0), (0.06, 0.5), (0.15, 0.25), (0.4, 0.1)])
