@@ -30,7 +30,9 @@ SIXTY += [("outside", name) for name in OUTSIDE]
 """Kind and effect of sixty sets, a tenth with what no list has; each part has some sixties."""
 
 _SIXTIES = {"open": 1, "sealed": 6}
-_DATE = (2026, 11, 26, 0, 0, 0)
+_EDITION = 2
+"""Thousands of the sets' numbers: no two editions have a name in common."""
+_DATE = (2026, 11, 29, 0, 0, 0)
 
 
 def entries() -> dict[str, dict[str, str]]:
@@ -44,7 +46,8 @@ def entries() -> dict[str, dict[str, str]]:
             order = np.random.default_rng(secrets.randbits(128)).permutation(len(SIXTY))
             for place, k in enumerate(order, start=1):
                 kind, effect = SIXTY[k]
-                found[f"{part}-{sixty * len(SIXTY) + place:03d}"] = {
+                number = 1000 * _EDITION + sixty * len(SIXTY) + place
+                found[f"{part}-{number}"] = {
                     "kind": kind, "effect": effect, "seed": secrets.token_hex(16)
                 }  # fmt: skip
     return found
