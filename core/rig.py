@@ -27,7 +27,7 @@ from .errors import InputError
 from .flow import FLOW_LAST
 from .inputs.materials import Mistyped, filled
 from .inputs.names import FileName
-from .inputs.rig_numbers import RigNumbers, solid_inertia
+from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
 from .inputs.toml_input import InputTable
 from .material import Material
 from .observables import GAUGE_KEYS, NOISE_KEYS
@@ -372,7 +372,7 @@ class StrikerTable(BodyTable):
         except ValueError:
             # what it would follow from has a line of its own: none for the mass as well
             return {**given, "mass_kg": 1.0}
-        mass = 4.0 / 3.0 * math.pi * radius.value**3 * density.value
+        mass = solid_mass(radius.value, density.value)
         std = mass * math.hypot(density.relative, 3.0 * radius.relative)
         return {**given, "mass_kg": {"value": mass, "std": std}}
 
@@ -385,6 +385,15 @@ class StrikerTable(BodyTable):
 
     _within_the_tip = field_validator("tip_flat_radius_m")(_below("tip_radius_m"))
     _possible_inertia = field_validator("inertia_kg_m2")(possible_inertia)
+
+    @property
+    def weighed(self) -> bool:
+        """Whether the mass is stated; else it follows from radius and density of a sphere."""
+        density = value_of(self.density_kg_m3)
+        return (
+            self.shape != "sphere"
+            or self.mass_kg.value != solid_mass(self.tip_radius_m.value, density)
+        )  # fmt: skip
 
     @property
     def body_radius(self) -> float:
@@ -523,4 +532,5 @@ class Rig(InputTable):
         return RigNumbers(
             MappingProxyType(of), frozenset(k for k, t in self.bodies.items() if t.rigid),
             {k: t.material for k, t in self.bodies.items()},
+            frozenset(f"strikers.{k}" for k, t in self.strikers.items() if not t.weighed),
         )  # fmt: skip

@@ -461,6 +461,10 @@ class DiagnosisRules:
         5.0, "times that the strength of what is struck is rather wrong than another kind [-]",
         "tempers of one metal differ by 2, and no other number of a sheet is as rarely measured",
     )  # fmt: skip
+    contradicted: float = rule(
+        50.0, "times that a mass or radius is wrong where it contradicts the density [-]",
+        "of fifty sheets one has the density of another ball, or a hollow one",
+    )  # fmt: skip
     grid_places: tuple[tuple[int, int], ...] = rule(
         ((1, 241), (2, 49), (3, 17), (4, 11), (5, 7)),
         "places per parameter of a refined grid, by the number of parameters [-]",

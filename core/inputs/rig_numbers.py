@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 from ..errors import InputError
 from ..material import Material
@@ -24,24 +25,34 @@ class RigNumbers:
       striker's radius, length between its tips (0 of a sphere) and inertia.
     - `rigid`: tables of the bodies that do not deform.
     - `metals`: name of each body's metal, by its table.
+    - `solids`: tables of the spheres whose mass follows from their radius.
     """
 
     of: Mapping[str, float]
     rigid: frozenset[str] = frozenset()
     metals: Mapping[str, str] = field(default_factory=dict)
+    solids: frozenset[str] = frozenset()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return how it is made again in another process, which takes no view of a mapping."""
-        return _made_again, (dict(self.of), self.rigid, dict(self.metals))
+        return _made_again, (dict(self.of), self.rigid, dict(self.metals), self.solids)
 
     def with_(self, changes: Mapping[str, float]) -> RigNumbers:
-        """Return the same with some numbers replaced; a mass takes its inertia with it."""
+        """Return the same with some numbers replaced.
+
+        A mass takes its inertia with it, the radius of a sphere that was not weighed its mass.
+        """
         of = {**self.of, **changes}
         for key, mass in changes.items():
             body = key.removesuffix(".mass_kg")
             inertia = f"{body}.inertia_kg_m2"
             if body != key and inertia in self.of:
                 of[inertia] = self.of[inertia] * mass / self.of[key]
+        for body in self.solids:
+            larger = of[f"{body}.tip_radius_m"] / self.of[f"{body}.tip_radius_m"]
+            if larger != 1.0:
+                for name, power in (("radius_m", 1), ("mass_kg", 3), ("inertia_kg_m2", 5)):
+                    of[f"{body}.{name}"] *= larger**power
         return replace(self, of=MappingProxyType(of))
 
     def assuming(self, **numbers: float) -> RigNumbers:
@@ -91,8 +102,13 @@ class RigNumbers:
         )  # fmt: skip
 
 
-def _made_again(of: dict[str, float], rigid: frozenset[str], metals: dict[str, str]) -> RigNumbers:
-    return RigNumbers(MappingProxyType(of), rigid, metals)
+def _made_again(of: dict[str, float], *others: Any) -> RigNumbers:
+    return RigNumbers(MappingProxyType(of), *others)
+
+
+def solid_mass(radius: float, density: float) -> float:
+    """Return the mass of a solid sphere [kg]."""
+    return 4.0 / 3.0 * math.pi * radius**3 * density
 
 
 def solid_inertia(mass: float, radius: float, length: float) -> float:

@@ -134,7 +134,11 @@ class Priors:
     def of(cls, ranking: Ranking) -> Priors:
         """Return those of a ranking's explanations."""
         acting = (s.mechanism.name for s in ranking.screened if _acts(ranking, s))
-        return cls(prior_shares([s.mechanism for s in ranking.screened]), frozenset(acting))
+        share = prior_shares([s.mechanism for s in ranking.screened])
+        for key in ranking.problem.contradicted:
+            if (name := f"{WRONG}{key}") in share:
+                share[name] += math.log(RULES.contradicted)
+        return cls(share, frozenset(acting))
 
     def log(self, names: Collection[str]) -> float:
         """Ln prior of an explanation, by its members."""

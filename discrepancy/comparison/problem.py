@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ...core.inputs.rig_numbers import RigNumbers
+from ...core.inputs.rig_numbers import RigNumbers, solid_mass
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
 from ...dynamics import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
@@ -33,6 +33,9 @@ from ..unknowns.wrong_number import WrongNumber, wrong_numbers
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
+
+# limit: how well a density is known [-]: alloys of a kind
+_DENSITY = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +122,7 @@ class Problem:
         for n in self.nuisances:
             guess = n.spread >= RULES.guessed or not (n.stated or n.name == "speed.scale")
             (known.discard if guess else known.add)(n.name)
+        known -= {f"{body}.mass_kg" for body in self.rig.solids}  # of which nobody said anything
         strikers = tuple(dict.fromkeys(c.striker for c in self.conditions))
         falls = [c.striker for c in self.conditions if c.around.from_height]
         fallen = max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0)
@@ -126,6 +130,21 @@ class Problem:
         oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
         found = wrong_numbers(known, strikers, observed, fallen=fallen, oblique=oblique)
         return tuple(found)
+
+    @property
+    def contradicted(self) -> frozenset[str]:
+        """Keys of masses and radii that contradict a ball's density, and could be so far off."""
+        found = set()
+        of, spread = self.rig.of, {n.name: n.spread for n in self.nuisances}
+        for body in {f"strikers.{c.striker}" for c in self.conditions} - self.rig.solids:
+            radius, mass = f"{body}.tip_radius_m", f"{body}.mass_kg"
+            density = of.get(f"{body}.density_kg_m3", math.nan)
+            off = math.log(of[mass] / solid_mass(of[radius], density))
+            known = math.hypot(_DENSITY, spread.get(mass, 0.0), 3.0 * spread.get(radius, 0.0))
+            if of.get(f"{body}.length_m") == 0.0 and abs(off) > 5.0 * known:
+                wrong = {mass: abs(off), radius: abs(off) / 3.0}
+                found |= {key for key, x in wrong.items() if x < math.log(RULES.wrong_most)}
+        return frozenset(found)
 
     @property
     def scales(self) -> tuple[tuple[str, int], ...]:

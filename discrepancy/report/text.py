@@ -31,15 +31,16 @@ _NAMED_LEADING = 3
 
 
 def headline(v: Verdict) -> str:
-    """Return the finding in one sentence, with its probability; and what comes before any physics.
+    """Return the finding in one sentence, with its probability.
 
-    Numbers of the set that contradict each other are named.
+    What comes before any physics is said first: numbers of the set that contradict each other, and
+    a wrong one.
     """
     checks = [a["check"] for a in v.audit if a["message"].startswith("contradiction")]
     if not checks:
         return _finding(v)
-    contradicted = f"But the set's numbers contradict each other ({joined(checks)})"
-    return f"{_finding(v)} {contradicted}: settle that first."
+    contradicted = f"The set's numbers contradict each other ({joined(checks)})"
+    return f"{contradicted}: settle that first. {_finding(v)}"
 
 
 def _finding(v: Verdict) -> str:
@@ -53,14 +54,14 @@ def _finding(v: Verdict) -> str:
     if v.verdict == WRONG_INPUT:
         return " ".join(map(_wrong, v.wrong_inputs)) + " Nothing else is missing then."
     if v.verdict == "missing-physics":
-        beside = "".join(f" {_wrong(w)}" for w in v.wrong_inputs)
+        first = "".join(f"{_wrong(w)} " for w in v.wrong_inputs)
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
         sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
         each = " each" if len(v.mechanisms) > 1 else ""
         likely = "most likely " * (max(v.probabilities.values()) < RULES.cautious)
         return (
-            f"The simulation {likely}lacks this: {what}; probability that it takes part{each}: "
-            f"{sure}.{beside}"
+            f"{first}The simulation {likely}lacks this: {what}; probability that it takes part"
+            f"{each}: {sure}."
         )
     if v.verdict == "indistinguishable":
         shared = [f.name for f in v.choice.members]

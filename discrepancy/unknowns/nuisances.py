@@ -59,7 +59,11 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
         key = f"strikers.{name}"
         found += _of_body(table, key, False)
         found += _stated(table.tip_radius_m, f"{key}.tip_radius_m", "m")
-        found += _stated(table.mass_kg, f"{key}.mass_kg", "kg")
+        # the radius moves the mass of a sphere that was not weighed; its density is left
+        mass = table.mass_kg.value
+        own = table.mass_kg if table.weighed else table.density_kg_m3
+        if own is not None and own.std > 0.0:
+            found.append(Nuisance(f"{key}.mass_kg", "kg", mass, own.relative))
     if any(c.press is None for c in conditions):
         measured = not any(c.around.from_height for c in conditions)
         spread = RULES.speed_measured if measured else RULES.speed_from_height

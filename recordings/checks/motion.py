@@ -23,7 +23,7 @@ def check_mass(found: RecordingSet) -> list[Finding]:
     How much of the round ends a rod has beyond its length is left open, from plain ends to two
     whole caps, but all rods of a set are taken to have ends of one kind.
     """
-    strikers = found.setup.strikers
+    strikers = {name: table for name, table in found.setup.strikers.items() if table.weighed}
     allowed = {name: limits.geometric_mass(striker) for name, striker in strikers.items()}
     known = {name: mass for name, mass in allowed.items() if mass is not None}
     bodies = [(strikers[name], mass) for name, mass in known.items()]

@@ -75,6 +75,7 @@ class Problem:
     baseline: str = "elastic-plastic"
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     wrong_numbers: tuple[Any, ...] = ()
+    contradicted: frozenset[str] = frozenset()
     assumed: tuple[Any, ...] = ()
     nuisances: tuple[Any, ...] = ()
     bench: Bench = field(default_factory=Bench)

@@ -48,10 +48,8 @@ def test_what_the_sheet_contradicts_itself_in_is_said_with_the_finding() -> None
         {"check": "force", "message": "caution: force: too large"},
     ]
     told = headline(said("adequate", 0.9, Located((), (), 3.0), audit=rows))
-    assert told.startswith("Nothing is missing")
-    assert told.endswith(
-        "But the set's numbers contradict each other (mass of rod): settle that first."
-    )
+    first = "The set's numbers contradict each other (mass of rod): settle that first. "
+    assert told.startswith(first + "Nothing is missing")
 
 
 def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: Any) -> None:

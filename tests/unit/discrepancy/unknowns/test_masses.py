@@ -1,0 +1,86 @@
+"""A ball that nobody weighed is as heavy as its radius says; one that was may contradict it."""
+
+import math
+from pathlib import Path
+
+import dentscope as ds
+import numpy as np
+import pytest
+from dentscope.discrepancy.comparison.problem import Problem, problem_of
+from dentscope.discrepancy.rules import RULES
+from dentscope.recordings import audit, read
+
+SET = """format = "recording-set/1"
+name = "drops"
+[target]
+E_Pa = 2.1e11
+nu = 0.3
+Sy_Pa = 3.0e8
+density_kg_m3 = 7850
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = {{ value = {radius}, std = {std} }}
+{mass}E_Pa = 2.08e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = {{ value = 7800, std = 39 }}
+[noise]
+restitution = 0.005
+dent_diameter_m_relative = 0.01
+"""
+TRUE = 4.0 / 3.0 * math.pi * 5e-3**3 * 7800
+
+
+def written(folder: Path, *, radius: float = 5e-3, mass: str = "", rows: str = "") -> Path:
+    text = SET.format(radius=radius, std=1e-5, mass=mass and f"mass_kg = {mass}\n")
+    (folder / "set.toml").write_text(text)
+    rows = rows or "1,ball,90,0.5,0.6,1e-3\n2,ball,90,1.0,0.55,1.2e-3\n"
+    head = "trial,striker,angle_deg,drop_height_m,restitution,dent_diameter_m\n"
+    (folder / "trials.csv").write_text(head + rows)
+    return folder
+
+
+def problem(folder: Path, **given: str) -> Problem:
+    return problem_of(read(written(folder, **given)))
+
+
+def test_of_a_ball_that_was_not_weighed_the_radius_moves_the_mass(tmp_path) -> None:
+    found = problem(tmp_path)
+    (one, _) = found.scenes(np.zeros(found.n_z), {"strikers.ball.tip_radius_m": 0.5})
+    assert one.striker.mass == pytest.approx(TRUE / 8.0, rel=1e-9)
+    assert one.striker.inertia == pytest.approx(0.4 * TRUE / 8.0 * 2.5e-3**2, rel=1e-9)
+    spread = {n.name: n.spread for n in found.nuisances}
+    assert spread["strikers.ball.mass_kg"] == pytest.approx(39.0 / 7800.0)
+    assert "strikers.ball.mass_kg" not in {w.key for w in found.wrong_numbers}
+    assert not [f for f in audit(read(tmp_path)).findings if f.check.startswith("mass of")]
+
+
+@pytest.mark.parametrize(
+    ("times", "wrong"),
+    [(1.02, set()), (2.0, {"mass_kg", "tip_radius_m"}), (8.0, {"tip_radius_m"}), (100.0, set())],
+)
+def test_what_contradicts_the_density_is_what_could_be_so_far_off(tmp_path, times, wrong) -> None:
+    found = problem(tmp_path, mass=str(TRUE * times))
+    assert found.contradicted == {f"strikers.ball.{key}" for key in wrong}
+
+
+def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> None:
+    """Readings of a ball of 5 mm, on a sheet that says 10 mm."""
+    ball, flat = (
+        ds.Material(E=E, nu=0.3, Sy=Sy, density=rho)
+        for E, Sy, rho in ((2.08e11, 1.7e9, 7800), (2.1e11, 3e8, 7850))
+    )
+    pair, rows = ds.Pair(ball, flat, 5e-3), ""
+    for k, height in enumerate((0.1, 0.2, 0.4, 0.7, 1.1, 1.6)):
+        blow = ds.impact(pair, mass=TRUE, speed=math.sqrt(2.0 * 9.81 * height))["fitted"]
+        dent = 2.0 * float(ds.LAWS["fitted"].contact_radius(pair, blow.peak_depth_m))
+        rows += f"{k},ball,90,{height},{blow.restitution:.4f},{dent:.4e}\n"
+    for mass, sure in (("", 0.5), (str(TRUE), 0.9)):
+        verdict = ds.diagnose(written(tmp_path, radius=0.01, mass=mass, rows=rows)).verdict
+        (wrong,) = verdict.wrong_inputs
+        assert wrong.number.key == "strikers.ball.tip_radius_m"
+        assert wrong.probability > sure
+        assert wrong.would_be is not None
+        assert wrong.would_be[1] < 5.1e-3
+        assert wrong.would_be[2] > 4.9e-3
+    assert RULES.contradicted > 1.0
