@@ -122,6 +122,7 @@ import numpy as np
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from .options import Options
+from .picture import draw
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -129,7 +130,18 @@ def reduce(path: Path, options: Options) -> Reduced:
     fall, up = np.loadtxt(path)
     e = Measured(float(np.sqrt(up / fall)), options.height_m_std)
     trial = Trial(observables={"restitution": e}, label="")
-    return Reduced(path, {"restitution": e}, (trial,), lambda to: to.write_text(""))
+    return Reduced(path, {"restitution": e}, (trial,), draw)
+'''
+PICTURE = '''
+"""The picture of the toy."""
+
+from ...core.output import figure
+from ..pictures import save
+
+
+def draw(path):
+    """Draw nothing."""
+    save(figure(1, 1, size=(1.0, 1.0))[0], path)
 '''
 
 
@@ -137,6 +149,7 @@ def test_an_input_format(recipe):
     toy = recipe("Add an input format")
     toy.write("reduce/toy/options.py", OPTIONS)
     toy.write("reduce/toy/kind.py", KIND)
+    toy.write("reduce/toy/picture.py", PICTURE)
     toy.write("reduce/toy/__init__.py", '"""Toy."""\n')
     toy.change("reduce/kinds.py", ("KINDS = {\n", 'KINDS = {\n    "toy": "two heights",\n'))
     (toy.work / "drop.txt").write_text("1.0 0.64\n")
