@@ -6,8 +6,8 @@ points. Both derive from one potential, so the elastic tangent is symmetric; the
 exact stress update is not, and the full matrix is assembled. The basis values, the quadrature and
 the degrees of freedom come from scikit-fem; this file only sums them up.
 
-Eight elements are taken at a time, their points in the lanes of `material.lanes`: lane 8 q + k is
-point q of element k.
+Eight elements are taken at a time, their points in the lanes of `material.return_map`: lane 8 q + k
+is point q of element k.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..core.unowned import unowned
 from .elements import Elements, State
 from .material import EXACT, exponential
 from .material.flow import law_at
-from .material.lanes import (
+from .material.return_map import (
     B0,
     E0,
     E1,

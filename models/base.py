@@ -7,7 +7,8 @@ which therefore needs no recompilation for another law.
 
     loading(par, depth)         -> F          normal force on first loading [N]
     radius(par, depth, peak)    -> a          contact radius; depth = peak on loading [m]
-    unloading(par, depth, peak) -> F          force after the peak [N]
+    unloading(par, depth, peak) -> F          force after the peak [N]; exactly 0 at and below
+                                              the residual depth
     residual(par, peak)         -> (s, f)     permanent depth of sphere and flat [m]
 
 Kernels are called with 0 < depth <= peak only; the driver answers for an open contact.

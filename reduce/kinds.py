@@ -1,12 +1,12 @@
 """The kinds of raw file, in reading order, and what each of their folders offers.
 
 The folder of a kind holds `options.py` with `Options`, the table of its options (an `InputTable`
-whose fields have a description; field names end in their unit); `kind.py` with
-`reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
-picture to check the numbers by. The command line and the recipes make their options from
-`Options`, so that an option is written once. Another package adds a kind as one module with
-`ABOUT` (what it gives), `Options` and `reduce` (`core.inputs.added`); where it fails, the others
-still work.
+whose fields have a description; field names end in their unit, standard deviations in `_std` behind
+it); `kind.py` with `reduce(path, options) -> Reduced`, loaded when a file is reduced; and
+`picture.py`, which draws the picture to check the numbers by. The command line and the recipes make
+their options from `Options`, so that an option is written once. Another package adds a kind as one
+module with `ABOUT` (what it gives), `Options` and `reduce` (`core.inputs.added`); where it fails,
+the others still work.
 """
 
 from __future__ import annotations
@@ -62,11 +62,9 @@ class Kind:
         options = parse_model(given, self.options, source=source)
         if not (self.takes_folders and path.is_dir()):
             checked_file(path, most=_RAW_BYTES, allowed="a raw recording")
-        from numpy.linalg import LinAlgError
-
         kind = self.module or import_module(f".{self.name}.kind", __package__)
         # the reader of somebody else raises what it likes
-        expected = Exception if self.module else (ArithmeticError, LinAlgError)
+        expected = Exception if self.module else (ArithmeticError, LookupError, ValueError)
         try:
             # threads of many small solutions wait for each other most of the time
             reduced: Reduced = in_one_thread(kind.reduce)(path, options)

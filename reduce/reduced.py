@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ..core.errors import InputError
 from ..core.inputs.flow_curve import MeasuredFlow
 from .measured import Measured, Trial
 
@@ -36,10 +37,17 @@ class Reduced:
 
     def known(self) -> Reduced:
         """Return the same without values that are no number: what was not measured is not told."""
-        return replace(
+        known = replace(
             self, values=_finite(self.values), striker=_finite(self.striker),
             trials=tuple(replace(t, observables=_finite(t.observables)) for t in self.trials),
         )  # fmt: skip
+        rows = (t.observables or t.trace or t.profile for t in known.trials)
+        if not (known.values or known.striker or known.flow or any(rows)):
+            raise InputError(
+                "nothing was measured", source=str(self.source),
+                allowed="a recording of the kind that was named",
+            )  # fmt: skip
+        return known
 
 
 def _finite(values: Mapping[str, Measured]) -> dict[str, Measured]:

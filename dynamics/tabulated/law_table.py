@@ -166,7 +166,7 @@ def _table(name: str, kernels: Kernels, numbers: bytes, R: float) -> TableCells:
         raise InputError(
             f"{name} recovers otherwise than by a power of the depth",
             key="law",
-            allowed="a law with such a recovery",
+            allowed="a force that falls as a power of the depth above the residual depth",
         )
 
     first, count = _first_octave(R), _octaves(R)

@@ -9,9 +9,9 @@ with heat (`flow`).
 
 from __future__ import annotations
 
-from . import lanes
+from . import return_map
 from .flow import FlowLaws, laws_of, no_laws
-from .lanes import EXACT, RADIAL
+from .return_map import EXACT, RADIAL
 from .tensor import exponential, log_strain
 
 __all__ = [
@@ -19,8 +19,8 @@ __all__ = [
     "RADIAL",
     "FlowLaws",
     "exponential",
-    "lanes",
     "laws_of",
     "log_strain",
     "no_laws",
+    "return_map",
 ]

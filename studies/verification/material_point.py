@@ -9,7 +9,8 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.material import Material
-from ...fem.material import EXACT, FlowLaws, exponential, lanes, laws_of, no_laws
+from ...fem.material import EXACT, FlowLaws, exponential, laws_of, no_laws
+from ...fem.material import return_map as lanes
 from ...fem.material.flow import law_at
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 1.0])

@@ -40,7 +40,7 @@ EXACT = {
     "fem/contact/forces.py": "_SUPPORT",
     "fem/contact/friction.py": "_SUPPORT",
     "fem/contact/point.py": "LOCAL",
-    "fem/material/lanes.py": "RADIAL EXACT L",
+    "fem/material/return_map.py": "RADIAL EXACT L",
     "fem/problem.py": "NUMERICS_VERSION",
     "fitting/calibrate.py": "SIGMAS",
     "fitting/form.py": "_START",

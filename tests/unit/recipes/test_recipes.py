@@ -85,6 +85,8 @@ def test_an_observable(recipe):
         'instrument="force", phase="unloading", log=True, power=2.0, simulated="contact_work_J"),'
     )
     toy.change("core/observables.py", ("_ROWS = (\n", f"_ROWS = (\n    {row}\n"))
+    kept = '"contact_work_J": 0.5 * reduced * (bodies.normal**2 - gone**2),'
+    toy.change("discrepancy/nulls/motion.py", ("    return {\n", f"    return {{{kept}\n"))
     folder = shutil.copytree(ROOT / "data/recordings/leeb-steel-300hv", toy.work / "set")
     lines = (folder / "trials.csv").read_text().splitlines()
     work = ["contact_work_J", "0.0075", "0.0018", "0.06"]
@@ -92,7 +94,7 @@ def test_an_observable(recipe):
     (folder / "trials.csv").write_text(text + "\n")
     with (folder / "set.toml").open("a") as stream:
         stream.write("contact_work_J = 0.0005\n")
-    assert "contact_work_J: 3 values" in toy.dentscope("recordings", "check", "set")
+    assert "7 numbers (work kept, " in toy.dentscope("diagnose", "set", "--quiet")
     code, told = toy.pytest("tests/contract/test_observables.py")
     assert code == 0, told
 
@@ -120,6 +122,7 @@ import numpy as np
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from .options import Options
+from .picture import draw
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -127,7 +130,18 @@ def reduce(path: Path, options: Options) -> Reduced:
     fall, up = np.loadtxt(path)
     e = Measured(float(np.sqrt(up / fall)), options.height_m_std)
     trial = Trial(observables={"restitution": e}, label="")
-    return Reduced(path, {"restitution": e}, (trial,), lambda to: to.write_text(""))
+    return Reduced(path, {"restitution": e}, (trial,), draw)
+'''
+PICTURE = '''
+"""The picture of the toy."""
+
+from ...core.output import figure
+from ..pictures import save
+
+
+def draw(path):
+    """Draw nothing."""
+    save(figure(1, 1, size=(1.0, 1.0))[0], path)
 '''
 
 
@@ -135,6 +149,7 @@ def test_an_input_format(recipe):
     toy = recipe("Add an input format")
     toy.write("reduce/toy/options.py", OPTIONS)
     toy.write("reduce/toy/kind.py", KIND)
+    toy.write("reduce/toy/picture.py", PICTURE)
     toy.write("reduce/toy/__init__.py", '"""Toy."""\n')
     toy.change("reduce/kinds.py", ("KINDS = {\n", 'KINDS = {\n    "toy": "two heights",\n'))
     (toy.work / "drop.txt").write_text("1.0 0.64\n")

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from dentscope.cli import run
+from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.reduced import Reduced
 from dentscope.studies.synthetic.sounds import write_wav
 
 RAMP = "time_s,force_N\n" + "".join(f"{k * 1e-4},{k % 7}\n" for k in range(60))
@@ -120,6 +122,27 @@ def test_each_mistake_gives_its_line(case, tmp_path, capsys):
     assert "Traceback" not in message
     # what is refused for what it shows is drawn, and nothing else is written
     assert all(p.name.endswith("-refused.png") for p in (tmp_path / "out").glob("*"))
+
+
+NONE = {"restitution": Measured(float("nan"), 0.1)}
+
+
+@pytest.mark.parametrize(
+    ("reader", "said"),
+    [
+        (lambda path, _: float(path.read_text()), "a.csv: its numbers cannot be reduced (could"),
+        (lambda path, _: path.read_text().split()[9], "a.csv: its numbers cannot be reduced (list"),
+        (lambda path, _: Reduced(path, NONE, (Trial(NONE),), print), "a.csv: nothing was measured"),
+    ],
+)
+def test_what_a_reader_of_ours_does_not_foresee_is_one_line(
+    reader, said, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("dentscope.reduce.sound.kind.reduce", reader)
+    (tmp_path / "a.csv").write_text(TIMES)
+    assert run(["reduce", "sound", str(tmp_path / "a.csv"), "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
 
 
 def test_a_file_that_is_not_there(tmp_path, capsys):

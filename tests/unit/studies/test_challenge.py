@@ -77,7 +77,10 @@ def test_a_strangers_method_is_scored_by_the_pages_instructions(
     assert run(["challenge", "score", "challenge/open", "answers.csv"]) == 0
     printed = capsys.readouterr().out
     (row,) = [line for line in PAGE.splitlines() if line.startswith("| these ten lines |")]
-    assert told_in(printed) == [cell.strip() for cell in row.split("|")[2:-1]]
+    told = told_in(printed)
+    assert told == [cell.strip() for cell in row.split("|")[2:-1]], (
+        f"docs/challenge.md: | these ten lines | {' | '.join(told)} |"
+    )
 
 
 def told_in(printed: str) -> list[str]:
