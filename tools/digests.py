@@ -90,8 +90,9 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     challenge = of_folder("data/challenge", ".h5")
     drawn = f"coefficients {drawn_from()[:SHORT]}"
     yield "challenge", digest(challenge), drawn, "dentscope campaign run --design challenge"
-    sets = [ROOT / "data" / "blind-sets" / name for name in ("open.zip", "sealed.zip", SEALS)]
-    yield "blind-sets", digest(sets), "the proof's generators, secret seeds", DRAWN
+    for place in ("blind-sets", "blind-sets/first"):
+        sets = [ROOT / "data" / place / name for name in ("open.zip", "sealed.zip", SEALS)]
+        yield place, digest(sets), "the proof's generators, secret seeds", DRAWN
     figures = of_folder("docs/thesis", ".png", ".md")
     yield "docs/thesis", digest(figures), drawn, "dentscope figures"
     laws = digest([ROOT / "data" / "proof" / "base_laws.json"])

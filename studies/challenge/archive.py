@@ -18,7 +18,9 @@ from ..proof.seal import Ledger, SealBroken, digest_of, digest_of_record
 from .answers import EXPLANATIONS
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "blind-sets"
-"""Where they lie."""
+"""Where those of the present edition lie, and in `FIRST` those of the one before."""
+
+FIRST = "first"
 
 PARTS = ("open", "sealed")
 """An archive each: with truths beside the sets, and without."""
@@ -32,34 +34,38 @@ _MOST = 20_000_000  # bytes
 @cache
 def seals() -> dict[str, dict[str, Any]]:
     """Name of each set that ships to the digests of its truth and its recordings."""
-    return Ledger(DATA / SEALS).of("truth")
+    before = DATA / FIRST / SEALS
+    return (Ledger(before).of("truth") if before.exists() else {}) | Ledger(DATA / SEALS).of(
+        "truth"
+    )
 
 
-def get(folder: Path) -> dict[str, int]:
+def get(folder: Path, *, first: bool = False) -> dict[str, int]:
     """Write the sets that ship below a folder; return how many each part has.
 
     `folder`: made if missing; receives `open/sets`, `open/truths`, `sealed/sets`, the seals and the
-    names that an answer may have.
+    names that an answer may have; `first`: those of the first edition.
 
     Raises `InputError`: a part is there already, or an archive is not what was published.
     """
+    data = DATA / FIRST if first else DATA
     for part in PARTS:
         if (folder / part).exists():
             raise InputError(
                 "there is one already", source=str(folder / part), allowed="a new folder"
             )
-    for line in (DATA / SUMS).read_text(encoding="utf-8").splitlines():
+    for line in (data / SUMS).read_text(encoding="utf-8").splitlines():
         digest, name = line.split()
-        if hashlib.sha256((DATA / name).read_bytes()).hexdigest() != digest:
-            raise InputError("not what was published", source=str(DATA / name), allowed=digest)
+        if hashlib.sha256((data / name).read_bytes()).hexdigest() != digest:
+            raise InputError("not what was published", source=str(data / name), allowed=digest)
     folder_for_output(folder)
-    (folder / SEALS).write_bytes((DATA / SEALS).read_bytes())
+    (folder / SEALS).write_bytes((data / SEALS).read_bytes())
     write_file(folder / "names.txt", "\n".join(EXPLANATIONS) + "\n")
     counts = {}
     for part in PARTS:
         with (
             tempfile.TemporaryDirectory(dir=folder) as place,
-            zipfile.ZipFile(DATA / f"{part}.zip") as archive,
+            zipfile.ZipFile(data / f"{part}.zip") as archive,
         ):
             archive.extractall(place)
             written = Path(place) / part
@@ -67,7 +73,7 @@ def get(folder: Path) -> dict[str, int]:
             for path in sets:
                 if digest_of(path) != seals()[path.name]["recordings"]:
                     raise InputError(
-                        "not the recordings that were sealed", source=str(DATA), key=path.name
+                        "not the recordings that were sealed", source=str(data), key=path.name
                     )
             written.rename(folder / part)
         counts[part] = len(sets)

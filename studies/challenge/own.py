@@ -9,7 +9,8 @@ import argparse
 from pathlib import Path
 
 from ...core.output import csv_text, write_file
-from ..proof.rivals import DIAGNOSIS, read_lines
+from ...discrepancy.unknowns.wrong_number import WRONG
+from ..proof.rivals import ANOTHER_PAIR, DIAGNOSIS, OUTSIDE, read_lines
 from .answers import COLUMNS
 
 ANSWERED = {DIAGNOSIS: "diagnosis.csv", "BIC, 3 % floor": "bic.csv"}
@@ -26,10 +27,21 @@ def write_own(folder: Path, out: Path) -> None:
         rows = [
             (line["set"], told, f"{p:.6g}")
             for line in lines
-            for told, p in line["said"][who]["odds"].items()
+            for told, p in _listed(line["said"][who]["odds"]).items()
             if p >= 5e-7
         ]
         write_file(out / name, csv_text(rows, header=COLUMNS))
+
+
+def _listed(odds: dict[str, float]) -> dict[str, float]:
+    """Probabilities by the names of an answer, which has none for a wrong number of the sheet."""
+    found: dict[str, float] = {}
+    for told, p in odds.items():
+        name = told
+        if WRONG in told:
+            name = ANOTHER_PAIR if "+" in told else OUTSIDE
+        found[name] = found.get(name, 0.0) + p
+    return found
 
 
 def main() -> None:

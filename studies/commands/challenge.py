@@ -21,11 +21,14 @@ app = group("Bring your own method: get concealed impacts, score what it says of
 
 
 @app.command()
-def get(folder: Annotated[Path, typer.Argument(help="New folder for the sets.")]) -> None:
+def get(
+    folder: Annotated[Path, typer.Argument(help="New folder for the sets.")],
+    first: Annotated[bool, typer.Option("--first", help="Those of the first edition.")] = False,
+) -> None:
     """Write the sets that ship: some with their truths, more whose truths are sealed."""
     from ..challenge.archive import get as unpack
 
-    for part, count in unpack(writable_folder(folder, key="FOLDER")).items():
+    for part, count in unpack(writable_folder(folder, key="FOLDER"), first=first).items():
         typer.echo(f"{folder / part}: {count} sets")
 
 

@@ -31,7 +31,8 @@ def challenge(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("stranger") / "challenge"
     counts = archive.get(folder)
     assert counts["open"] == 60
-    assert sum(counts.values()) == len(archive.seals())
+    before = archive.get(folder.with_name("before"), first=True)
+    assert sum((*counts.values(), *before.values())) == len(archive.seals())
     assert f"has 60 sets with their truths, `challenge/sealed` {counts['sealed']} without" in PAGE
     return folder
 
@@ -46,7 +47,7 @@ def test_the_sets_are_whole_and_sealed_truths_are_nowhere(challenge) -> None:
     with zipfile.ZipFile(archive.DATA / "sealed.zip") as packed:
         assert {Path(name).name for name in packed.namelist()} == {"set.toml", "trials.csv"}
     assert sum(p.stat().st_size for p in archive.DATA.iterdir()) < 5e6
-    for name in ("open-001", "sealed-001"):
+    for name in ("open-2001", "sealed-2001"):
         read = recordings.read(challenge / name.split("-")[0] / "sets" / name)
         assert read.setup.licence == "CC0-1.0"
 
@@ -103,26 +104,26 @@ COLUMNS = (
 )  # fmt: skip
 
 
-SETS = [f"open-{k:03d}" for k in range(1, 61)]
+SETS = [f"open-{k}" for k in range(2001, 2061)]
 SURE = {name: f"{name},baseline,1\n" for name in SETS}
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        (HEAD + "".join(list(SURE.values())[1:]), "1 sets without an answer: open-001"),
-        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,0.7\n"}).values()),
-         "probabilities of open-007 add to 0.7"),
-        (HEAD + "".join((SURE | {"open-007": "open-007,tillt,1\n"}).values()),
+        (HEAD + "".join(list(SURE.values())[1:]), "1 sets without an answer: open-2001"),
+        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,0.7\n"}).values()),
+         "probabilities of open-2007 add to 0.7"),
+        (HEAD + "".join((SURE | {"open-2007": "open-2007,tillt,1\n"}).values()),
          "did you mean tilt?"),
-        (HEAD + "".join((SURE | {"open-007": "open-007,tilt+tilt,1\n"}).values()), "unknown name"),
-        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,-1\n"}).values()), "from 0 to 1"),
-        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,much\n"}).values()), "finite number"),
-        (HEAD + "".join(SURE.values()) + "sealed-001,tilt,1\n",
-         "1 sets that are not there, the first 'sealed-001'"),
+        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt+tilt,1\n"}).values()), "unknown name"),
+        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,-1\n"}).values()), "from 0 to 1"),
+        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,much\n"}).values()), "finite number"),
+        (HEAD + "".join(SURE.values()) + "sealed-2001,tilt,1\n",
+         "1 sets that are not there, the first 'sealed-2001'"),
         (HEAD + "".join(f"sealed-{k:03d},tilt,1\n" for k in range(1, 61)), "60 sets that are not"),
-        (HEAD + "".join(SURE.values()) + SURE["open-001"], "baseline twice for open-001"),
-        ("set,name\nopen-001,tilt\n", "column probability: missing"),
+        (HEAD + "".join(SURE.values()) + SURE["open-2001"], "baseline twice for open-2001"),
+        ("set,name\nopen-2001,tilt\n", "column probability: missing"),
         ("", "empty"),
         (None, "no such file"),
     ],
@@ -141,7 +142,7 @@ def test_other_mistakes(challenge, tmp_path, capsys) -> None:
     path = tmp_path / "answers.csv"
     path.write_text(HEAD + "".join(SURE.values()))
     wrong = tmp_path / "wrong.json"
-    wrong.write_text('{"open-001": {}}')
+    wrong.write_text('{"open-2001": {}}')
     for arguments, told in (
         (["get", str(challenge)], "there is one already"),
         (["score", str(challenge), str(path)], "no sets"),
@@ -222,13 +223,15 @@ def test_scores_by_hand() -> None:
 
 
 def test_own_answers_are_what_was_kept(tmp_path) -> None:
-    odds = {"tilt": 0.75, "baseline": 0.25, "adhesion": 1e-9}
+    wrong = {"wrong-input:target.Sy_Pa": 0.125, "tilt+wrong-input:target.Sy_Pa": 0.125}
+    odds = {"tilt": 0.5, "baseline": 0.25, "adhesion": 1e-9} | wrong
     said = {who: {"verdict": "", "names": [], "odds": odds} for who in own.ANSWERED}
     line = {"set": "open-001", "source": "s", "said": said}
     (tmp_path / "peers.jsonl").write_text(json.dumps(line) + "\n")
     own.write_own(tmp_path, tmp_path)
     found = answers.read_answers(tmp_path / "bic.csv", ["open-001"])
-    assert found == {"open-001": {"tilt": 0.75, "baseline": 0.25}}
+    unlisted = {"outside-library": 0.125, "another pair": 0.125}
+    assert found == {"open-001": {"tilt": 0.5, "baseline": 0.25} | unlisted}
 
 
 @pytest.fixture(scope="module")
