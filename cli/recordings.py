@@ -128,16 +128,17 @@ def _new_from(
     still = list[str]()
     for ball, found in balls.items():
         shape = found.shape if sphere is None else "sphere" if sphere else "rod"
+        first = f"{trial_name(sheet)}-{ball}" if ball else ""
         if not dry_run:
             options = {"shape": shape, "column": "; ".join(columns), "ball": ball}
-            row = Row(striker=ball, trial=f"{trial_name(sheet)}-{ball}" if ball else "")
+            row = Row(striker=ball, trial=first)
             done = store(found.reduced(sheet), folder, row, kind="sheet", options=options,
                          strikers=tuple(filter(None, balls)))  # fmt: skip
             still = list(done.notes)
         typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
         _tell_columns(found, found.left_out)
         if dry_run:
-            show_table(new_console(), *found.shown())
+            show_table(new_console(), *found.shown(first or trial_name(sheet)))
     if dry_run:
         return
     for line in still:
