@@ -117,9 +117,9 @@ def _new_from(
     dry_run: bool,
 ) -> None:  # fmt: skip
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
+    from ..core.inputs.names import trial_name
     from ..recordings.template import refuse_a_set
     from ..reduce.output.into_set import store
-    from ..reduce.output.record import trial_name
     from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_balls
 
