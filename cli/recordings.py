@@ -85,7 +85,7 @@ def new(
     folder: NewFolder,
     sphere: Annotated[
         bool | None,
-        typer.Option("--sphere/--rod", help="The striker; of a sheet a sphere, else a rod."),
+        typer.Option("--sphere/--rod", help="The striker; a sphere unless a sheet says."),
     ] = None,
     sheet: FromSheet = None,
     of_book: OfBook = "",
@@ -107,9 +107,10 @@ def new(
     if column or dry_run or of_book:
         told = "--column, --dry-run and --sheet are of a sheet"
         raise misused(told, key="--from", allowed="--from SHEET beside them")
-    write_template(folder, shape="sphere" if sphere else "rod")
+    write_template(folder, shape="rod" if sphere is False else "sphere")
     check = f"dentscope recordings check {quote(str(folder))}"
-    typer.echo(f"{folder}: fill in set.toml and trials.csv, then: {check}")
+    told = "set.toml and trials.csv (delete columns that are not measured)"
+    typer.echo(f"{folder}: fill in {told}, then: {check}")
 
 
 def _new_from(
