@@ -85,7 +85,7 @@ def new(
     folder: NewFolder,
     sphere: Annotated[
         bool | None,
-        typer.Option("--sphere/--rod", help="The striker; of a sheet a sphere, else a rod."),
+        typer.Option("--sphere/--rod", help="The striker; a sphere unless a sheet says."),
     ] = None,
     sheet: FromSheet = None,
     of_book: OfBook = "",
@@ -107,9 +107,10 @@ def new(
     if column or dry_run or of_book:
         told = "--column, --dry-run and --sheet are of a sheet"
         raise misused(told, key="--from", allowed="--from SHEET beside them")
-    write_template(folder, shape="sphere" if sphere else "rod")
+    write_template(folder, shape="rod" if sphere is False else "sphere")
     check = f"dentscope recordings check {quote(str(folder))}"
-    typer.echo(f"{folder}: fill in set.toml and trials.csv, then: {check}")
+    told = "set.toml and trials.csv (delete columns that are not measured)"
+    typer.echo(f"{folder}: fill in {told}, then: {check}")
 
 
 def _new_from(
@@ -117,9 +118,9 @@ def _new_from(
     dry_run: bool,
 ) -> None:  # fmt: skip
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
+    from ..core.inputs.names import trial_name
     from ..recordings.template import refuse_a_set
     from ..reduce.output.into_set import store
-    from ..reduce.output.record import trial_name
     from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_balls
 
@@ -128,16 +129,17 @@ def _new_from(
     still = list[str]()
     for ball, found in balls.items():
         shape = found.shape if sphere is None else "sphere" if sphere else "rod"
+        first = f"{trial_name(sheet)}-{ball}" if ball else ""
         if not dry_run:
             options = {"shape": shape, "column": "; ".join(columns), "ball": ball}
-            row = Row(striker=ball, trial=f"{trial_name(sheet)}-{ball}" if ball else "")
+            row = Row(striker=ball, trial=first)
             done = store(found.reduced(sheet), folder, row, kind="sheet", options=options,
                          strikers=tuple(filter(None, balls)))  # fmt: skip
             still = list(done.notes)
         typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
         _tell_columns(found, found.left_out)
         if dry_run:
-            show_table(new_console(), *found.shown())
+            show_table(new_console(), *found.shown(first or trial_name(sheet)))
     if dry_run:
         return
     for line in still:

@@ -173,10 +173,11 @@ def _reduce(
     pictures: dict[str, Path],
 ) -> None:  # fmt: skip
     """Reduce one file; its picture, or that of what was refused, is added to `pictures`."""
+    from ..core.inputs.names import trial_name
     from ..core.inputs.toml_input import parse_model
     from ..reduce.gates import Refused
     from ..reduce.output.into_set import store
-    from ..reduce.output.record import trial_name, write_record
+    from ..reduce.output.record import write_record
     from ..reduce.output.row import Row
 
     with _named_as_options():

@@ -163,8 +163,8 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
         )
     )  # fmt: skip
     return (
-        f"how far the contact law '{problem.law_name}' may be off: {sizes}; the recordings ask for "
-        f"{misfit['error_size']:.2g} times as much",
+        f"how far the contact law '{problem.law_name}' may be off: {sizes}; the recordings fit "
+        f"best with {misfit['error_size']:.2g} times these errors",
         f"with every input as stated the misfit is chi2 = {misfit['as_stated']:.0f} "
         f"({misfit['numbers']:.0f} numbers); of it {took}",
     )

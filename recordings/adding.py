@@ -8,11 +8,12 @@ from pathlib import Path
 
 from ..core.errors import InputErrors
 from ..core.inputs.csv_table import Problems, TextTable, read_text_table, shown
+from ..core.inputs.names import trial_name
 from ..core.output import csv_text, locked, write_files
 from .bench import refuse_beyond
 from .columns import TRIAL_COLUMNS, VARIED
 from .recording_set import RecordingSet, files_of, read, read_as
-from .trials import read_trials
+from .trials import trials_in
 
 
 def add_trials(
@@ -20,18 +21,24 @@ def add_trials(
 ) -> tuple[RecordingSet, tuple[str, ...]]:
     """Add trials to a set; what is there stays as it is written. Return the set, and the new names.
 
-    The rows have columns of trials.csv; those that the set has not had yet are added to it. Where
-    the set has an `order` and the table has none, the rows follow in theirs. They are a session of
-    their own, the next `batch`, unless they say of which they are. Every mistake of the rows is a
-    line of one error, by file, row and column; nothing is written then.
+    The rows have columns of trials.csv; those that the set has not had yet are added to it. Without
+    a column `trial` they are named by their file and row. Where the set has an `order` and the
+    table has none, the rows follow in theirs. They are a session of their own, the next `batch`,
+    unless they say of which they are. Every mistake of the rows is a line of one error, by file,
+    row and column; nothing is written then.
     """
     read(folder)  # a lock would make the folders around a set that is not there
     # another process may add to the same set: neither's rows must be lost
     with locked(folder):
         before = read(folder)
         problems = Problems(source or str(rows))
-        new = read_trials(rows, frozenset(before.setup.strikers), problems)
-        table = read_text_table(rows, TRIAL_COLUMNS, Problems(str(rows)), free=VARIED)
+        table = read_text_table(rows, TRIAL_COLUMNS, problems, free=VARIED)
+        if table is not None and "trial" not in table.columns:
+            names = tuple(f"{trial_name(rows)}-{row:03d}" for row in table.rows)
+            columns, cells = ("trial", *table.columns), {"trial": names, **table.cells}
+            table = replace(table, columns=columns, cells=cells)
+        strikers = frozenset(before.setup.strikers)
+        new = None if table is None else trials_in(table, strikers, problems)
         if new is not None and table is not None:
             for row, name in zip(table.rows, new.trial, strict=True):
                 if name in before.trials.trial:

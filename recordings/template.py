@@ -9,7 +9,6 @@ from typing import Literal
 
 from ..core.errors import InputError
 from ..core.output import write_file
-from .columns import MEASURED
 from .setup_file import FORMAT
 
 Shape = Literal["rod", "sphere"]
@@ -58,6 +57,10 @@ mass_kg = "?"
 """,
 }
 
+_COLUMNS = (
+    "trial", "striker", "angle_deg", "drop_height_m", "restitution", "permanent_depth_m",
+    "dent_diameter_m", "note",
+)  # fmt: skip
 _USUAL = {"rod": "rod", "sphere": "ball"}
 _METAL = """# material = "stainless steel"
 density_kg_m3 = "?"
@@ -109,6 +112,5 @@ def refuse_a_set(folder: Path) -> None:
 def write_template(folder: Path, *, shape: Shape) -> None:
     """Write set.toml, and trials.csv with its header line, into a folder that holds neither."""
     refuse_a_set(folder)
-    columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
     write_file(folder / "set.toml", template_text(shape, folder.resolve().name))
-    write_file(folder / "trials.csv", ",".join(columns) + "\n")
+    write_file(folder / "trials.csv", ",".join(_COLUMNS) + "\n")

@@ -146,8 +146,11 @@ def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Tri
     `strikers` are the names that the column `striker` may hold.
     """
     table = read_text_table(path, TRIAL_COLUMNS, problems, free=VARIED)
-    if table is None:
-        return None
+    return None if table is None else trials_in(table, strikers, problems)
+
+
+def trials_in(table: TextTable, strikers: frozenset[str], problems: Problems) -> Trials | None:
+    """Return the trials of the rows of such a table, as `read_trials` does."""
     approached = bool(set(_APPROACH) & set(table.columns))
     # a press is normal: presses alone need no angle
     needed = ("trial", "striker", "angle_deg") if approached else ("trial", "striker")

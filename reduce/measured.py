@@ -48,6 +48,10 @@ class Measured:
         ratio = self.value / other.value
         return Measured(ratio, math.hypot(self.std, ratio * other.std) / abs(other.value))
 
+    def rounded(self) -> Measured:
+        """Return the value to 12 digits: 0.35 for 35 cm, not 0.35000000000000003 m."""
+        return Measured(float(f"{self.value:.12g}"), float(f"{self.std:.12g}"))
+
     def minus(self, other: Measured) -> Measured:
         """Return the difference to an independent value."""
         return Measured(self.value - other.value, math.hypot(self.std, other.std))

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.csv_table import Problems, read_text_table
+from ...core.inputs.names import trial_name
 from ...reduce.images.picture_file import PICTURES, natural_order
 from ...reduce.kinds import Kind
-from ...reduce.output.record import trial_name
 from .places import misused
 
 _FILE = "file"

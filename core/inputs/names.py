@@ -5,6 +5,8 @@ A name is looked at where it is read, from a file or an option; a writer may the
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import AfterValidator
@@ -32,6 +34,11 @@ def names_a_file(text: str) -> bool:
         and not _NEVER & set(text)
         and text not in (".", "..")
     )
+
+
+def trial_name(path: Path) -> str:
+    """Return the name of a raw file as one that can name a trial."""
+    return re.sub(r'[/\\:*?"<>|\s]+', "_", path.stem).strip("_.") or "trial"
 
 
 def _checked(text: str) -> str:

@@ -6,7 +6,7 @@ import math
 
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE
-from ..experiments.session import Proposal, Telling
+from ..experiments.session import Proposal, Session, Telling
 from ..findings import Verdict
 from ..rules import RULES
 from .wording import counted, explanation, joined, number_name, percent, quantity
@@ -26,14 +26,14 @@ def next_lines(v: Verdict) -> list[str]:
     s = v.session
     if not s.steps and not v.proposals:
         return []
-    told = f"{s.information:.2g} of {s.entropy:.2g} nat"
+    told = f"remove {_of_doubt(s.information, s)}"
     steps = [f"{k}. {_step(step)}" for k, step in enumerate(s.steps, start=1)]
     meaning = [_meaning(v, one) for one in s.outcomes]
     if s.goes_on:
         head = f"In one session ({_time(s.minutes)} of {_time(s.length)}), which is expected to "
-        return [f"{head}bring {told} of what is open:", *steps, *meaning]
+        return [f"{head}{told}:", *steps, *meaning]
     leads = max(v.probabilities, key=lambda name: v.probabilities[name])
-    why = f"a session of {_time(s.length)} would bring {told}" if s.steps else "it offers none"
+    why = f"a session of {_time(s.length)} would {told}" if s.steps else "it offers none"
     head = f"Stop: no trial with this rig tells apart what is left: {why}."
     if s.entropy < RULES.worth:
         head = f"Stop: nothing is left to tell apart ({s.entropy:.2g} nat)."
@@ -41,7 +41,7 @@ def next_lines(v: Verdict) -> list[str]:
         head += " What leads has no name, and a trial tells named explanations apart."
     others = [p for p in v.proposals if p.kind in ("noise", "none")][:1] if not s.elsewhere else []
     others += s.elsewhere
-    found = [head, *(f"What would help: {p.change} ({_worth(p)})." for p in others)]
+    found = [head, *(f"What would help: {p.change} ({_worth(p, s)})." for p in others)]
     if steps:
         found += ["To test what leads all the same:", *steps, *meaning]
     return found
@@ -58,10 +58,14 @@ def _step(p: Proposal) -> str:
     return f"{text[0].upper()}{text[1:]} ({_time(p.minutes)})."
 
 
-def _worth(p: Proposal) -> str:
+def _worth(p: Proposal, s: Session) -> str:
     if math.isfinite(p.interval):
         return f"the interval would be {p.interval:.2g} times as wide as now"
-    return f"{p.information:.2g} nat"
+    return f"removes {_of_doubt(p.information, s)}"
+
+
+def _of_doubt(information: float, s: Session) -> str:
+    return f"{percent(information / max(s.entropy, 1e-9))} of the doubt"
 
 
 def _meaning(v: Verdict, one: Telling) -> str:

@@ -174,18 +174,19 @@ def _took(v: Verdict, fitted: Fit) -> str:
     for name, z in sorted(zip(names, fitted.z, strict=True), key=lambda item: -abs(item[1])):
         if abs(z) > PULLED:
             far.setdefault(name, float(z))
-    told = ", ".join(f"{name} by {z:+.1f}" for name, z in list(far.items())[:_STORY_MOVED])
-    least = f"no input by more than {PULLED:g}"
-    return f"chi2 {fitted.chi2:.3g}, for which it moves {told or least} standard deviations"
+    told = ", ".join(f"{name} {z:+.1f}" for name, z in list(far.items())[:_STORY_MOVED])
+    told = f"off by so many times their uncertainty: {told}" if told else (
+        f"no input off by more than {PULLED:g} times its uncertainty"
+    )  # fmt: skip
+    return f"chi2 {fitted.chi2:.3g}, {told}"
 
 
 def _found(v: Verdict) -> ToldCells:
     rows = tuple(
         (
-            name, quantity(q["value"], q["unit"]), interval(q["low"], q["high"], q["unit"]),
-            axis.parameter.source,
+            name, value, between, axis.parameter.source,
         )
-        for (name, q), axis in zip(own_parameters(v).items(), v.best.grid.axes, strict=True)
+        for (name, value, between), axis in zip(own_parameters(v), v.best.grid.axes, strict=True)
     )  # fmt: skip
     return ToldCells(("number", "value", "90 % interval", "where its range comes from"), rows)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+
+import numpy as np
 
 from ...core.observables import OBSERVABLES
 from ..choice.decide import WRONG_INPUT
@@ -28,6 +29,10 @@ STORY_LEAST = 0.005
 
 # limit: explanations that the finding names where nothing is decided [-]: a line
 _NAMED_LEADING = 3
+
+# limit: places between which four fifths of a prior lie [-]
+_MIDDLE = np.array([0.1, 0.9])
+_UNTOLD = "not told by these data"
 
 
 def headline(v: Verdict) -> str:
@@ -188,9 +193,8 @@ def lines(v: Verdict) -> list[str]:
     out += [f"  {m}" for m in [nowhere(v)] if m]
     if v.best.mechanisms:
         out += ["", "What explains it"]
-        for name, q in own_parameters(v).items():
-            between = interval(q["low"], q["high"], q["unit"])
-            out.append(f"  {name} = {quantity(q['value'], q['unit'])} (90 %: {between})")
+        for name, value, between in own_parameters(v):
+            out.append(f"  {name}{':' if value == _UNTOLD else ' ='} {value} (90 %: {between})")
         i = v.improvement
         out.append(
             "  no condition could be left out of the fit to try the prediction on"
@@ -227,6 +231,16 @@ def lines(v: Verdict) -> list[str]:
     return out
 
 
-def own_parameters(v: Verdict) -> dict[str, dict[str, Any]]:
-    """Return the parameters of the best explanation's mechanisms only."""
-    return {label: v.parameters[label] for label in v.best.grid.labels}
+def own_parameters(v: Verdict) -> list[tuple[str, str, str]]:
+    """Return name, value and 90 % interval of the parameters of the best explanation only.
+
+    Of one whose interval is wider than four fifths of what was thought before, no value.
+    """
+    found = []
+    for name, axis in zip(v.best.grid.labels, v.best.grid.axes, strict=True):
+        q, (least, most) = v.parameters[name], axis.parameter.value(_MIDDLE)
+        value = quantity(q["value"], q["unit"])
+        if q["low"] <= least and q["high"] >= most:
+            value = _UNTOLD
+        found.append((name, value, interval(q["low"], q["high"], q["unit"])))
+    return found

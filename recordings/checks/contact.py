@@ -27,7 +27,8 @@ def check_energy(view: TrialView) -> Iterator[Finding]:
         yield _supply(view.name, cost, brought) if e is None else _budget(view.name, cost, lost)
     elif pressure is not None:
         for cost in _of_circle(view, pressure):
-            yield _supply(view.name, cost, brought)
+            stated = view.found.setup.target.hardness_Pa is not None
+            yield _supply(view.name, cost, brought, None if e is None else lost, stated=stated)
 
 
 def _work(view: TrialView, depth: float, relative: float, pressure: TrialReading) -> TrialReading:
@@ -71,27 +72,42 @@ def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, Tr
     return whole, TrialReading(lost, max(std, RULES.rounding * brought))
 
 
-def _supply(name: str, work: TrialReading, brought: TrialReading) -> Finding:
-    least = RULES.dent_work[0]
+def _supply(
+    name: str, work: TrialReading, brought: TrialReading, lost: TrialReading | None = None,
+    *, stated: bool = True,
+) -> Finding:  # fmt: skip
+    """A circle's work against what was brought, and half of what was `lost`.
+
+    The work of what stays is part of it, so that it bounds that from above, in a metal whose
+    hardness is not `stated` up to how much it may harden. From below only what was brought does:
+    part of a circle's work springs back.
+    """
+    least, most = RULES.dent_work
     z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
-    return Finding(
-        f"energy of {name} against all that was brought",
-        Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
-        f"the dent takes {work.value:.3g} J of {brought.value:.3g} J brought "
-        f"({work.value / brought.value:.0%})",
-        work.value,
-        brought.value,
-        max(z, 0.0),
-    )
+    severity = Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT
+    text = f"the dent takes {work.value:.3g} J of {brought.value:.3g} J brought "
+    text += f"({work.value / brought.value:.0%})"
+    if lost is not None:
+        text += f", of which {max(lost.value, 0.0):.3g} J were lost"
+        missing = _unexplained(work, lost, most if stated else RULES.hardened * most)
+        if missing > 2.0:
+            severity, z = Severity.CAUTION, missing
+            text += ": look for a wrong size or mass, or a sink outside the contact"
+    title = f"energy of {name} against all that was brought"
+    return Finding(title, severity, text, work.value, brought.value, max(z, 0.0))
+
+
+def _unexplained(work: TrialReading, lost: TrialReading, most: float) -> float:
+    """Deviations by which `most` of a dent's work is below what it should explain of the loss."""
+    least = RULES.unexplained
+    return (least * lost.value - most * work.value) / math.hypot(most * work.std, least * lost.std)
 
 
 def _budget(name: str, work: TrialReading, lost: TrialReading) -> Finding:
     title = f"energy of {name}"
     least, most = RULES.dent_work
     beyond = (least * work.value - lost.value) / math.hypot(least * work.std, lost.std)
-    missing = (RULES.unexplained * lost.value - most * work.value) / math.hypot(
-        most * work.std, RULES.unexplained * lost.std
-    )
+    missing = _unexplained(work, lost, most)
     share = f" ({work.value / lost.value:.0%})" if lost.value > 0.0 else ""
     text = f"the dent takes {work.value:.3g} J of {lost.value:.3g} J lost{share}"
     if beyond > RULES.beyond:

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ...core.inputs.names import ALLOWED, names_a_file
+from ...core.inputs.names import ALLOWED, names_a_file, trial_name
 from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.observables import LOAD
 from ...core.output import csv_text, finish_pending, locked, write_files
@@ -31,7 +31,7 @@ from ...recordings.template import Shape, template_text
 from ...recordings.trials import Trials
 from ..measured import Measured, Trial
 from ..reduced import Reduced
-from .record import trial_name, write_record
+from .record import write_record
 from .row import Row
 
 _TEXTS = ("trial", "striker", "spot", "note")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -37,11 +36,6 @@ def write_record(
     write_file(record, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
     reduced.draw(picture)
     return record, picture
-
-
-def trial_name(path: Path) -> str:
-    """Return the name of a raw file as one that can name a trial."""
-    return re.sub(r'[/\\:*?"<>|\s]+', "_", path.stem).strip("_.") or "trial"
 
 
 def _origin(source: Path) -> dict[str, Any]:

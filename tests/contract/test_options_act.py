@@ -92,7 +92,7 @@ ACTS = (
     ("export law fitted", "export law compact"),
     ("keys case", "keys inverse"),
     ("materials steel-1010-hot-rolled", "materials steel-1018-hot-rolled"),
-    ("recordings new one", "recordings new one --sphere"),
+    ("recordings new one", "recordings new one --rod"),
     ("recordings check kharaz-2001-oblique", "recordings check thesis-chapter-4"),
     ("recordings audit kharaz-2001-oblique", "recordings audit kharaz-2001-oblique --all"),
     ("examples --to one", "examples --to two"),

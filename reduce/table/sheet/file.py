@@ -59,11 +59,11 @@ class Sheet:
         words = " ".join(bare(header) for header, _ in self.columns)
         return "rod" if re.search(ROD, words) and not self.striker else "sphere"
 
-    def shown(self) -> tuple[list[str], list[list[str]]]:
-        """Return names and cells of a table of the trials, in the units of a set."""
+    def shown(self, first: str) -> tuple[list[str], list[list[str]]]:
+        """Return names and cells of a table of the trials, as a set has them; `first` is theirs."""
         names = dict.fromkeys(name for trial in self.trials for name in trial.observables)
         rows = [
-            [t.label, *(str(t.observables.get(name, "")) for name in names), t.note]
+            [f"{first}-{t.label}", *(str(t.observables.get(name, "")) for name in names), t.note]
             for t in self.trials
         ]
         return ["trial", *names, "note"], rows

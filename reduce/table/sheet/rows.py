@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from statistics import median
 
 from ....core.errors import InputError, InputErrors
 from ....recordings.columns import MEASURED
+from ....recordings.rules import RULES as OWN
 from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
 from ...shared.units import UNITS
@@ -92,21 +94,22 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
         return trials_of(replace(sheet, columns=once), told)
     _check_one_ball(sheet, [k for k, *_ in found.trials], apart=not found.from_above)
     striker = _striker(found.body)
-    naming = naming_of(rows, [k for k, *_ in found.trials], columns)
+    _check_rebounds(sheet, found)
+    naming, alike = naming_of(rows, [k for k, *_ in found.trials], columns)
     stds = scatter_of([(t.observables, seen) for _, t, seen in found.trials])
     named = [
         replace(
             trial, label=rows[k - 1][naming.place] if naming else f"{k:03d}",
             note=note_of(rows[k - 1], columns, naming),
             observables={
-                n: Measured(v.value, stds[n] * v.value / len(seen[n]) ** 0.5) if n in stds else v
-                for n, v in trial.observables.items()
+                n: (Measured(v.value, stds[n] * v.value / len(seen[n]) ** 0.5) if n in stds else v)
+                .rounded() for n, v in trial.observables.items()
             },
         )
         for k, trial, seen in found.trials
     ]  # fmt: skip
     own = [(c.header, became(c, columns, found.used, striker, naming)) for c in columns]
-    lines = _lines(found, columns, [*stds], told)
+    lines = [*_lines(found, columns, [*stds], told), *filter(None, [alike])]
     return tuple(named), (*own, *told), (*found.left, *lines), striker
 
 
@@ -228,7 +231,7 @@ def _striker(body: Mapping[str, set[Measured]]) -> dict[str, Measured]:
     one = {name: next(iter(said)) for name, said in body.items() if len(said) == 1}
     size, mass = one.get(words.BALL_DIAMETER), one.get(words.BALL_MASS)
     found = {"tip_radius_m": size and size.scaled(0.5), "mass_kg": mass}
-    return {key: value for key, value in found.items() if value and value.value > 0.0}
+    return {key: value.rounded() for key, value in found.items() if value and value.value > 0.0}
 
 
 def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
@@ -256,6 +259,19 @@ def _later(sheet: SheetRows, readings: Sequence[Readings]) -> list[SheetColumn]:
             allowed="drops from one height in one row; later bounces without a header",
         )  # fmt: skip
     return found
+
+
+def _check_rebounds(sheet: SheetRows, so_far: _SoFar) -> None:
+    """Refuse rebounds that as a whole are above their falls, whatever single rows remark."""
+    every = [t.observables["restitution"].value for _, t, _ in so_far.trials
+             if "restitution" in t.observables]  # fmt: skip
+    if every and (middle := median(every)) > 1.0 + OWN.restitution_slip:
+        names = {*so_far.used, *(APPROACHES if so_far.used & {*words.REBOUNDS} else ())}
+        of = [repr(c.header) for c in sheet.columns if c.kind.name in names and not c.spread]
+        raise InputError(
+            f"restitution {middle:.3g}, the median of {len(every)} rows", source=sheet.source,
+            key=" and ".join(of), allowed="up to 1; are their units mixed up?",
+        )  # fmt: skip
 
 
 def _check_columns(

@@ -89,13 +89,19 @@ def scatter_of(trials: Sequence[tuple[Mapping[str, Measured], Readings]]) -> dic
 
 def naming_of(
     rows: Sequence[Sequence[str]], taken: Sequence[int], columns: Sequence[SheetColumn]
-) -> SheetColumn | None:
-    """Return the column that names the rows that are taken, each otherwise; None without one."""
-    for column in columns:
+) -> tuple[SheetColumn | None, str]:
+    """Return the column that names the rows that are taken, each otherwise; without one why not."""
+    why = ""
+    for column in (c for c in columns if c.kind.name == "trial"):
         cells = [rows[k - 1][column.place].casefold() for k in taken]
-        if column.kind.name == "trial" and len(set(filter(names_a_file, cells))) == len(taken):
-            return column
-    return None
+        if len(set(filter(names_a_file, cells))) == len(taken):
+            return column, ""
+        twice = next((name for name, n in Counter(filter(None, cells)).items() if n > 1), "")
+        if twice and not why:
+            a, b, *_ = (k for k, cell in zip(taken, cells, strict=True) if cell == twice)
+            said = rows[a - 1][column.place]
+            why = f"{column.header!r} does not name the trials: {said!r} is in rows {a} and {b}"
+    return None, why
 
 
 def note_of(row: Sequence[str], columns: Sequence[SheetColumn], naming: SheetColumn | None) -> str:

@@ -9,7 +9,7 @@ from dentscope.discrepancy.findings import WrongInput
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
-from dentscope.discrepancy.report.text import headline, nowhere, why
+from dentscope.discrepancy.report.text import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
 from dentscope.discrepancy.unknowns.wrong_number import WrongNumber, WrongReading
 from dentscope.dynamics.mechanisms import MECHANISMS
@@ -177,3 +177,13 @@ def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> No
     assert (told["value"], told["low"], told["factor"], told["high"]) == (None, 1.12, 1.15, 1.18)
     told = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6).told
     assert (told["value"], told["low"], told["high"]) == (3e8, 2.8e8, 3.2e8)
+
+
+@pytest.mark.parametrize(("most", "value"), [(0.5, "22 mm"), (0.7, "not told by these data")])
+def test_an_interval_as_wide_as_the_range_gives_no_value(most: float, value: str) -> None:
+    """Four fifths of 1 mm to 1 m, a logarithm, are 2 mm to 0.501 m."""
+    [drag] = (m for m in MECHANISMS if m.name == "air-drag")
+    grid = SimpleNamespace(labels=("s",), axes=(SimpleNamespace(parameter=drag.parameters[1]),))
+    found = {"s": {"value": 0.022, "low": 1.9e-3, "high": most, "unit": "m"}}
+    v: Any = SimpleNamespace(best=SimpleNamespace(grid=grid), parameters=found)
+    assert own_parameters(v) == [("s", value, f"1.9 mm to {1e3 * most:g} mm")]

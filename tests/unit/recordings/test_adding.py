@@ -40,6 +40,10 @@ def test_rows_go_below_those_that_are_there(folder, capsys):
     assert now.trials.sessions.tolist() == [1.0] * len(first.trials) + [2.0]
     *after, _ = (folder / "trials.csv").read_text().splitlines()
     assert all(x.startswith(y) for x, y in zip(after, before.splitlines(), strict=True))
+    rows(folder, f"{HEAD.removeprefix('trial,')}\n{striker},90,2,0.7,0.01\n")
+    assert add_trials(folder, path)[1] == ("rows-002",)  # as a sheet's without names
+    with pytest.raises(InputErrors, match="'rows-002' is in the set already"):
+        add_trials(folder, path)
 
 
 def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, capsys):

@@ -462,5 +462,11 @@ def test_the_circle_of_a_dent_takes_no_more_than_all_energy_brought(set_of, wide
     found = of_check(check_energy(set_of(target=target, **columns)), "energy")
     assert found.severity is Severity[said]
     assert 0.55 * found.value / found.expected == pytest.approx(wide**4)
+    # 1.1 p pi a^4 / 4R is half of 0.36 of that energy at 0.09 of a^4
+    target += "hardness_Pa = { value = 9.94e8, std = 1e7 }\n"
+    small = columns | {"dent_diameter_m": [wide * 0.5 * circle], "restitution": [0.8]}
+    lack = "CAUTION" if (0.5 * wide) ** 4 < 0.09 else "CONSISTENT"
+    found = of_check(check_energy(set_of(target=target, **small, restitution_std=[1e-3])), "energy")
+    assert found.severity is Severity[lack]
     # sliding widens a dent
     assert not check_energy(set_of(target=target, **columns, approach_tangential_m_s=[1.0]))

@@ -32,10 +32,12 @@ def run(*arguments):
     return result.output, result.exception
 
 
-@pytest.mark.parametrize(("option", "count"), [([], 12), (["--sphere"], 10)])
+@pytest.mark.parametrize(("option", "count"), [([], 10), (["--rod"], 12)])
 def test_template_is_a_set_to_fill_in(tmp_path, option, count):
     _, failure = run("new", tmp_path / "set", *option)
     assert failure is None
+    header = (tmp_path / "set" / "trials.csv").read_text()
+    assert ",restitution,permanent_depth_m,dent_diameter_m," in header
     _, failure = run("check", tmp_path / "set")
     lines = str(failure).splitlines()
     assert sum("to fill in" in line for line in lines) == count

@@ -60,7 +60,7 @@ def test_trials_without_a_label_keep_a_row_each(tmp_path: Path) -> None:
     blows = [Trial({"restitution": Measured(e, 0.01)}) for e in (0.8, 0.7)]
     (tmp_path / "gates.txt").write_text("1.0 0.8\n1.0 0.7\n")
     reduced = Reduced(tmp_path / "gates.txt", {}, tuple(blows), lambda to: None)
-    row = Row(striker="rod", impact_speed_m_s=1.0)
+    row = Row(striker="ball", impact_speed_m_s=1.0)
     found = store(reduced, tmp_path / "set", row, kind="gates", options={})
     assert found.trials == ("gates-1", "gates-2")
     rows = (tmp_path / "set" / "trials.csv").read_text().splitlines()

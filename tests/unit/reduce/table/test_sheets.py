@@ -69,6 +69,7 @@ def test_the_command_makes_a_set(tmp_path, capsys):
     assert run([*command, "--dry-run", "--column", "Datum=note"]) == 0
     told = capsys.readouterr().out
     assert "schlecht zu sehen" in told
+    assert "Fallversuche-3" in told
     assert "'Datum': note (5 cells)" in told
     assert not folder.exists()
     assert run([*command, "--column", "Datun=note"]) == 2
@@ -81,6 +82,7 @@ def test_the_command_makes_a_set(tmp_path, capsys):
     assert "'k.A.' is no length" in told
     made = read(folder, unfinished=True)
     assert made.setup.name == "drops of May"
+    assert f",{math.sqrt(0.426):.12g}," in (folder / "trials.csv").read_text()
     assert made.trials.note[2] == "schlecht zu sehen"
     assert list(made.setup.strikers) == ["ball"]
     assert run(command) == 2
@@ -373,6 +375,8 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("drop height (cm),Stoßzahl (%)\n10,0.65\n", "'0.65': a part of 1, or of 100?"),
         ("drop height (cm),dent depth (um)\n10,-9\n", "'-9' is too little"),
         ("drop height (cm),e\n10,65\n", "'65' is too much"),
+        ("Drop (cm),Rebound (cm),note\n10,44,\n20,80,a\n30,108,b\n",
+         r"'Drop \(cm\)' and 'Rebound \(cm\)': restitution 2, the median of 3 rows"),
     ],
 )  # fmt: skip
 def test_a_sheet_that_would_be_misread_is_refused(tmp_path, text, said):
@@ -496,6 +500,8 @@ def test_trials_are_named_by_a_column_whose_entries_differ(tmp_path, rows, label
     sheet = read_text(tmp_path, f"Test,drop height (cm),e\n{rows}")
     assert [t.label for t in sheet.trials] == labels
     assert columns(sheet)["Test"].startswith(became)
+    twice = "'Test' does not name the trials: 'A1' is in rows 2 and 3"
+    assert (twice in sheet.left_out) == ("a1" in rows)
 
 
 def test_of_two_columns_that_one_names_the_trials_whose_entries_differ(tmp_path):
