@@ -30,8 +30,8 @@ from .store import Store
 # becomes too large all the same there is one more
 _PART_FILL = 0.93
 
-# limit: published parts in all [-]: 120 MB of a repository
-_PARTS = 12
+# limit: published parts in all [-]: 160 MB of a repository
+_PARTS = 16
 
 # limit: size that no published part exceeds [bytes]: a repository's files stay below 10 MB
 _PART_BYTES = 10_000_000

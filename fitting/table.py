@@ -25,6 +25,9 @@ Sources = Mapping[Path, Sequence[CaseRecord]]
 HELD_OUT = ("validation", "challenge")
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
 
+# limit: number from which a case of `space` judges too [-]: half of a Sobol design, one itself
+_SECOND_HALF = 128
+
 _COARSEST = "smoke"
 
 
@@ -137,7 +140,9 @@ def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:
 
 def is_held_out(record: CaseRecord) -> bool:
     """Whether a case is kept out of every fit."""
-    return record.case.name.startswith(HELD_OUT)
+    design, _, number = record.case.name.partition("-")
+    second = design == "space" and number.isdigit() and int(number) >= _SECOND_HALF
+    return second or record.case.name.startswith(HELD_OUT)
 
 
 def is_current(record: CaseRecord) -> bool:

@@ -218,11 +218,11 @@ def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
     source = stored(tmp_path / "run")
     folder = tmp_path / "data"
     folder.mkdir()
-    for k in range(12):
+    for k in range(16):
         (folder / f"other-{k}.h5").write_text("")
-    with pytest.raises(InputError, match="12 in all"):
+    with pytest.raises(InputError, match="16 in all"):
         publish(DESIGN, source, folder)
-    assert {p.name for p in folder.iterdir()} == {f"other-{k}.h5" for k in range(12)}
+    assert {p.name for p in folder.iterdir()} == {f"other-{k}.h5" for k in range(16)}
 
 
 def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):

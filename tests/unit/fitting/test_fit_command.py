@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from dentscope.core.flow import Flow, swift
 from dentscope.core.tables import markdown
 from dentscope.fitting import table
 from dentscope.fitting.prediction import Errors
-from dentscope.fitting.table import read_sources, tables_of
+from dentscope.fitting.table import is_held_out, read_sources, tables_of
 from dentscope.models.coefficients import read_coefficients
 from dentscope.studies.closed_form.page import (
     BEGIN,
@@ -131,6 +132,15 @@ def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
     hard = replace(other, problem=replace(other.problem, pair=pair))
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (plain, hard)])
     assert tables_of(read_sources([tmp_path]))[0].names == (plain.name,)
+
+
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [("space-000", False), ("space-127", False), ("space-128", True), ("space-255", True),
+     ("validation-2-007", True), ("near-equal-200", False), ("space-odd", False)],
+)  # fmt: skip
+def test_the_second_half_of_the_space_judges_as_validation_does(name, kept):
+    assert is_held_out(SimpleNamespace(case=SimpleNamespace(name=name))) is kept
 
 
 def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
