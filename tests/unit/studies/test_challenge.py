@@ -7,6 +7,7 @@ import runpy
 import zipfile
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -233,6 +234,26 @@ def test_own_answers_are_what_was_kept(tmp_path) -> None:
     found = answers.read_answers(tmp_path / "bic.csv", ["open-001"])
     unlisted = {"outside-library": 0.125, "another pair": 0.125}
     assert found == {"open-001": {"tilt": 0.5, "baseline": 0.25} | unlisted}
+
+
+def test_own_answers_of_sealed_sets_go_on_where_they_were_stopped(
+    challenge, tmp_path, monkeypatch
+) -> None:
+    asked, sets = [], tmp_path / "part" / "sets"
+    sets.mkdir(parents=True)
+    for name in ("sealed-2001", "sealed-2002"):
+        (sets / name).symlink_to(challenge / "sealed" / "sets" / name)
+    (tmp_path / "sealed.jsonl").write_text('{"set": "sealed-2002", "odds": {"tilt": 1.0}}\n')
+    monkeypatch.setattr(
+        own, "diagnose", lambda found: asked.append(found.name) or SimpleNamespace(
+            probabilities={"baseline": 1.0}
+        ),
+    )  # fmt: skip
+    digest = own.answer_sealed(tmp_path / "part", tmp_path)
+    assert asked == ["sealed-2001"]
+    told = tmp_path / "diagnosis.csv"
+    assert told.read_text() == f"{HEAD}sealed-2001,baseline,1\nsealed-2002,tilt,1\n"
+    assert digest == digest_of(told)
 
 
 @pytest.fixture(scope="module")
