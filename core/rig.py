@@ -202,7 +202,15 @@ class MaterialTable(InputTable):
     @model_validator(mode="before")
     @classmethod
     def _of_a_known_material(cls, given: Any) -> Any:
-        return filled(given, frozenset(cls.model_fields)) if isinstance(given, dict) else given
+        if not isinstance(given, dict):
+            return given
+        known = frozenset(cls.model_fields)
+        found = filled(given, known | {"hardness_Pa"})
+        if known | given.keys() >= {"hardness_Pa"} or "hardness_Pa" not in found:
+            return found
+        hardness = Quantity.model_validate(found["hardness_Pa"])
+        rest = {key: x for key, x in found.items() if key != "hardness_Pa"}
+        return {"Sy_Pa": by_tabor(hardness).model_dump(), **rest}
 
     @field_validator("material", mode="before")
     @classmethod
@@ -255,6 +263,15 @@ TABOR = 2.8
 """Indentation hardness over yield strength [-] (Tabor, The Hardness of Metals, 1951)."""
 
 
+def by_tabor(hardness: Quantity) -> Quantity:
+    """Return the yield strength behind a hardness [Pa].
+
+    Its standard deviation is that of the hardness, and how far metals differ in the ratio.
+    """
+    value, own = hardness.value / TABOR, hardness.relative or RULES.hardness_spread
+    return Quantity(value=value, std=value * math.hypot(own, RULES.tabor_spread))
+
+
 class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
 
@@ -273,16 +290,10 @@ class BodyTable(MaterialTable):
 
     @property
     def strength(self) -> Quantity | None:
-        """Yield strength: as stated, else the hardness over `TABOR` [Pa].
-
-        The standard deviation of the second is that of the hardness, and how far metals differ in
-        the ratio.
-        """
+        """Yield strength: as stated, else by the hardness [Pa]."""
         if self.Sy_Pa is not None or self.hardness_Pa is None:
             return self.Sy_Pa
-        value = self.hardness_Pa.value / TABOR
-        own = self.hardness_Pa.relative or RULES.hardness_spread
-        return Quantity(value=value, std=value * math.hypot(own, RULES.tabor_spread))
+        return by_tabor(self.hardness_Pa)
 
 
 class TargetTable(BodyTable):

@@ -25,6 +25,7 @@ from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
 from .result import leave_resting
 from .scene import Approach, ForceTransform, Friction, Scene
+from .surface import NONE
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
 from .walk import layout as c
@@ -221,10 +222,11 @@ def _by_work(
 def _crater_width(scene: Scene, depth: Array, peak: Array) -> Array:
     """Width of a round crater of parabolic walls as `surface.scar` reads it [m]."""
     step, level = scene.instrument.scan_step, scene.instrument.scan_height
-    width, seen = np.zeros_like(depth), depth > level
+    width = np.zeros_like(depth)
+    whole = _quick(scene.law, scene).contact_radius(scene.pair, peak)
+    seen = depth > np.maximum(level, NONE * whole)
     if seen.any():
-        deep, law = depth[seen], _quick(scene.law, scene)
-        radius = law.contact_radius(scene.pair, peak[seen])
+        deep, radius = depth[seen], whole[seen]
         if level == 0.0:
             width[seen] = 2.0 * radius
             return width

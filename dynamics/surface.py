@@ -48,6 +48,9 @@ N_IMPRINT = 9
 MOST = 24
 N_SURFACE = N_HEAD + MOST * N_IMPRINT
 
+# limit: depth of a dent over its radius that is none [-]: what a smooth law leaves below yield
+NONE = 1e-6
+
 # limit: most samples of a scan across a dent [-]: 3 m at the usual step; a law that is far out of
 # its range may give a dent without end
 _SAMPLES = 1e6
@@ -294,11 +297,9 @@ def scar(surface, step, level):
 
     Of the circles of contact; or, `level` above 0, as a profilometer ends them: the scan samples
     every `step`, and the scar ends where it is first `level` below the fresh flat, between two
-    samples by a straight line. Zero for a dent that is nowhere so deep.
+    samples by a straight line. Zero for a dent that is nowhere so deep, or `NONE` of its radius.
     """
     deepest, place = dent(surface)
-    if not deepest > level:
-        return 0.0, 0.0, 0.0
     first, last, wide = math.inf, -math.inf, 0.0
     for i in range(int(surface[COUNT])):
         at = N_HEAD + i * N_IMPRINT
@@ -306,6 +307,8 @@ def scar(surface, step, level):
         first = min(first, surface[at + FIRST], surface[at + START] - _STEEPEST * radius)
         last = max(last, surface[at + LAST], surface[at + END] + _STEEPEST * radius)
         wide = max(wide, radius)
+    if not deepest > max(level, NONE * wide):
+        return 0.0, 0.0, 0.0
     far = last - first
     if level == 0.0:
         return far, 2.0 * wide, far - 2.0 * wide

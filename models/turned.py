@@ -130,15 +130,27 @@ class SimilarLaw(ContactLaw):
         s = self.scale(pair)
         return Pair(_stiffer(pair.sphere, s), _stiffer(pair.flat, s), s * pair.R), s
 
+    @property
+    def turn(self) -> float:
+        """Weight of the split between the bodies as the other one has it: a half of equal spheres.
+
+        Neither is the flat there. As (2 R/R_2)^4 it is what finite elements ask for at R_2 = 2 R_1.
+        """
+        return 0.5 * (2.0 * max(1.0 - 1.0 / self.ratio, 0.0)) ** 4
+
     def parameters(self, pair: Pair) -> Array:
-        """The law's numbers of that pair, and s behind them, shape (n,)."""
-        other, s = self.alike(pair)
-        return np.append(self.law.parameters(other), s)
+        """The law's numbers of that pair and of it turned, `turn`, and s of both, shape (n,)."""
+        (here, s), (there, t) = self.alike(pair), self.alike(pair.turned)
+        both = (self.law.parameters(one) for one in (here, there))
+        return np.concatenate([*both, [self.turn, t, s]])
 
     def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...)."""
-        other, s = self.alike(pair)
-        return self.law.share(other, np.asarray(depth) / s)
+        here, there = (
+            self.law.share(other, np.asarray(depth) / s)
+            for other, s in map(self.alike, (pair, pair.turned))
+        )
+        return np.asarray((1.0 - self.turn) * here + self.turn * (1.0 - there))
 
     def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
         """How far off the law may be; as `ContactLaw.uncertainty`."""
@@ -180,19 +192,25 @@ def _similar_kernels(own: Kernels) -> Kernels:
 
     @njit(LOADING_SIGNATURE, _nrt=False)
     def similar_loading(par, depth):  # type: ignore[no-untyped-def]
-        return loading(par[:-1], depth / par[-1])
+        return loading(par[: (len(par) - 3) // 2], depth / par[-1])
 
     @njit(BRANCH_SIGNATURE, _nrt=False)
     def similar_radius(par, depth, peak):  # type: ignore[no-untyped-def]
-        return radius(par[:-1], depth / par[-1], peak / par[-1])
+        return radius(par[: (len(par) - 3) // 2], depth / par[-1], peak / par[-1])
 
     @njit(BRANCH_SIGNATURE, _nrt=False)
     def similar_unloading(par, depth, peak):  # type: ignore[no-untyped-def]
-        return unloading(par[:-1], depth / par[-1], peak / par[-1])
+        return unloading(par[: (len(par) - 3) // 2], depth / par[-1], peak / par[-1])
 
     @njit(RESIDUAL_SIGNATURE, _nrt=False)
     def similar_residual(par, peak):  # type: ignore[no-untyped-def]
-        sphere, flat = residual(par[:-1], peak / par[-1])
-        return par[-1] * sphere, par[-1] * flat
+        n, turn = (len(par) - 3) // 2, par[-3]
+        sphere, flat = residual(par[:n], peak / par[-1])
+        whole = sphere + flat
+        other_flat, other_sphere = residual(par[n : 2 * n], peak / par[-2])
+        there = other_sphere + other_flat
+        if there > 0.0:
+            sphere += turn * (other_sphere / there * whole - sphere)
+        return par[-1] * sphere, par[-1] * (whole - sphere)
 
     return Kernels(similar_loading, similar_radius, similar_unloading, similar_residual)

@@ -16,7 +16,7 @@ from ..core.inputs.materials import entry_named
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import STRAINS, STRENGTHS, MaterialTable, Quantity, Radius
+from ..core.rig import STRAINS, STRENGTHS, MaterialTable, Quantity, Radius, quantities
 from .case_file import read_flow_curve
 
 FlowLike = Flow | FlowCurve | str | Path | ArrayLike
@@ -184,7 +184,7 @@ def material(name: str) -> Material:
     -------
     Material
         Modulus, Poisson's ratio, yield strength and density in SI units. Without a listed strength
-        (ceramics, hardened balls) the body is elastic.
+        it is that of the listed hardness (hardened balls), as in files; else the body is elastic.
 
     Raises
     ------
@@ -196,5 +196,6 @@ def material(name: str) -> Material:
     >>> material("aluminium-6061-t6").Sy
     276000000.0
     """
-    of = {key: numbers["value"] for key, numbers in entry_named(name).numbers.items()}
+    entry_named(name)
+    of = quantities(MaterialTable(material=name))
     return Material(of["E_Pa"], of["nu"], of.get("Sy_Pa", math.inf), of["density_kg_m3"], name=name)

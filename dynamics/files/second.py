@@ -101,7 +101,8 @@ class SecondSphere(StruckSphere):
         """Return how far the struck body's share of what stays may be off, relative, (...).
 
         The law parts it between a sphere and a flat. Of two equal spheres neither is the flat: the
-        truth lies midway to the share that either would have as the other.
+        truth lies midway to the share that either would have as the other. Laws of ours have that
+        (`SimilarLaw.turn`), and are as unsure of it.
         """
         depth = np.asarray(delta, dtype=float)
         if not math.isfinite(pair.Sy_min):

@@ -3,9 +3,9 @@
 import dentscope as ds
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.core.inputs.materials import filled, materials, sources
+from dentscope.core.inputs.materials import entry_named, filled, materials, sources
 from dentscope.core.inputs.toml_input import parse_model
-from dentscope.core.rig import BodyTable, Rig
+from dentscope.core.rig import BodyTable, MaterialTable, Rig
 from dentscope.start.case_file import HardeningTable, RateTable
 
 
@@ -103,6 +103,18 @@ def test_a_stated_value_goes_first():
 def test_other_names_and_rigid_bodies_stay_as_they_are():
     for given in ({"material": "gouda"}, {"material": "lead", "rigid": True}, {"E_Pa": 1e9}):
         assert filled(given, frozenset(BodyTable.model_fields)) == given
+
+
+def test_a_material_known_by_its_hardness_yields_alike_in_every_file_and_in_python():
+    name = "steel-52100-hardened"
+    Sy = entry_named(name).numbers["hardness_Pa"]["value"] / 2.8
+    assert ds.material(name).Sy == pytest.approx(Sy)
+    for table in (MaterialTable, BodyTable):
+        assert table.model_validate({"material": name}).strength.value == pytest.approx(Sy)
+    stated = MaterialTable.model_validate({"material": name, "Sy_Pa": 1e9})
+    assert stated.strength.value == 1e9
+    with pytest.raises(ValueError, match="hardness_Pa"):
+        MaterialTable.model_validate({"material": name, "hardness_Pa": 8e9})
 
 
 def test_a_sphere_of_a_known_material_has_its_mass():

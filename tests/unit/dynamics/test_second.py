@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, InputErrors, Material, Pair
 from dentscope.core.flow import Flow, swift
-from dentscope.dynamics import Approach, Friction, Scene, Striker, strike
+from dentscope.dynamics import Approach, Friction, Scene, Striker, impacts, strike
 from dentscope.dynamics.files.second import SecondSphere, radius_error
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.told.band import last_blow
@@ -184,6 +184,30 @@ def test_two_balls_lose_more_than_one_on_a_flat():
             struck.append(strike(scene_).restitution)
         two, one = struck
         assert low < 1.0 - two / one < high
+
+
+def test_equal_spheres_keep_equal_dents_and_unequal_ones_what_finite_elements_have():
+    """The smaller's part of the approach at 0.02 and 0.05 R, R_2 = 2 R_1: 0.524 and 0.616 (E/300)."""
+    for speed in (1.0, 10.0):
+        text = TWO.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
+        found = last_blow(setup_of(tomllib.loads(text), source="two.toml"), LAWS["fitted"])
+        assert found.residual_flat_m == pytest.approx(found.residual_sphere_m, rel=1e-9) != 0.0
+    metal = Material(E=200e9, nu=0.3, Sy=200e9 / 300.0)
+    R = 1e-3 / 1.5
+    law = SecondSphere(2e-3).faced(LAWS["fitted"], R)
+    found = law.share(Pair(metal, metal, R), R * np.array([0.02, 0.05]))
+    assert found == pytest.approx([0.524, 0.616], abs=0.01)
+
+
+def test_below_first_yield_there_is_no_scar():
+    """A smooth law leaves some 1e-16 m; by steps, and by work alone."""
+    hard = Material(E=205e9, nu=0.3, Sy=3e9, density=7800.0)
+    for angle in (0.5 * math.pi, 1.0):
+        found = strike(scene(hard, speed=0.02, angle=angle, mu=0.1))
+        assert 0.0 < found.residual_flat_m < 1e-6 * found.peak_depth_m
+        assert found.scar_length_m == found.scar_width_m == 0.0
+    table = impacts(scene(hard), speeds=np.array([0.02, 2.0]))
+    assert table["scar_width_m"][0] == 0.0 < table["scar_width_m"][1]
 
 
 def test_rough_spheres_that_slide_are_the_same_from_either_side():
