@@ -187,7 +187,7 @@ def test_two_balls_lose_more_than_one_on_a_flat():
 
 
 def test_equal_spheres_keep_equal_dents_and_unequal_ones_what_finite_elements_have():
-    """The smaller's part of the approach at 0.02 and 0.05 R, R_2 = 2 R_1: 0.524 and 0.616 (E/300)."""
+    """The smaller's part at 0.02 and 0.05 R with R_2 = 2 R_1: 0.524 and 0.616 (E/300)."""
     for speed in (1.0, 10.0):
         text = TWO.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
         found = last_blow(setup_of(tomllib.loads(text), source="two.toml"), LAWS["fitted"])
