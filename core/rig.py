@@ -24,7 +24,6 @@ from pydantic import (
 )
 
 from .errors import InputError
-from .flow import FLOW_LAST
 from .inputs.materials import Mistyped, filled
 from .inputs.names import FileName
 from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
@@ -141,8 +140,8 @@ def _between(low: float, high: float, **units: float) -> AfterValidator:
 
 STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
 """Of any stress at which a metal flows [Pa]."""
-STRAINS = _range(0.0, FLOW_LAST, **{"%": 1e-2})
-"""Of plastic strains."""
+STRAINS = _range(0.0, 3.0, **{"%": 1e-2})
+"""Of measured plastic strains: torsion reaches the largest."""
 SPEEDS = _range(1e-9, 2e4, **{"mm/s": 1e-3})
 """Of any approach [m/s]."""
 
@@ -359,7 +358,7 @@ class StrikerTable(BodyTable):
     @model_validator(mode="before")
     @classmethod
     def _radius_of_a_sphere(cls, given: Any) -> Any:
-        of_ball = isinstance(given, dict) and given.get("shape") == "sphere"
+        of_ball = isinstance(given, dict) and given.get("shape") != "rod"
         if not of_ball or "tip_radius_m" in given or "radius_m" not in given:
             return given
         rest = {key: value for key, value in given.items() if key != "radius_m"}
@@ -368,7 +367,7 @@ class StrikerTable(BodyTable):
     @model_validator(mode="before")
     @classmethod
     def _mass_of_a_sphere(cls, given: Any) -> Any:
-        if not isinstance(given, dict) or given.get("shape") != "sphere" or "mass_kg" in given:
+        if not isinstance(given, dict) or given.get("shape") == "rod" or "mass_kg" in given:
             return given
         given = filled(given, frozenset(cls.model_fields))  # the density of a known material
         if isinstance(given.get("material"), Mistyped):
@@ -386,6 +385,13 @@ class StrikerTable(BodyTable):
         mass = solid_mass(radius.value, density.value)
         std = mass * math.hypot(density.relative, 3.0 * radius.relative)
         return {**given, "mass_kg": {"value": mass, "std": std}}
+
+    @field_validator("shape", mode="before")
+    @classmethod
+    def _no_ball(cls, given: Any) -> Any:
+        if given == "ball":
+            raise ValueError("'rod' or 'sphere'; a ball is a sphere")
+        return given
 
     @field_validator("radius_m", "length_m")
     @classmethod

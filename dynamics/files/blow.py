@@ -306,9 +306,9 @@ def _cell(
     if value != 0.0 and max(up, down) > max(std, least):
         sides = (min(math.hypot(std, x), most) for x, most in ((up, rise), (down, fall)))
         above, below = (_number(float(f"{x:.1e}") if x > least else 0.0) for x in sides)
-        return f"{_number(value)} +{above} -{below}"
+        return f"{value:.4g} +{above} -{below}"
     if value != 0.0 and std > least:
-        return f"{_number(value)} ± {_number(float(f'{std:.1e}'))}"
+        return f"{value:.4g} ± {_number(float(f'{std:.1e}'))}"
     return _number(value)
 
 

@@ -21,6 +21,9 @@ _CELL = re.compile(
 )
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
 """What may be thousands or a number with three decimals: 1.000."""
+_MILLIONS = re.compile(r"[+-]?\d{1,3}([.,]\d{3}){2,}")
+_LONG = re.compile(r"[1-9]\d{3,}")
+"""Of one who writes no separators of thousands."""
 _DECIMAL = re.compile(
     r"[+-]?\d+(?P<a>[.,])(\d{1,2}|\d{4,})(?!\d)|[+-]?0(?P<b>[.,])\d+"
     r"|[+-]?\d{1,3}(?:(,\d{3})+(?P<c>\.)|(\.\d{3})+(?P<d>,))\d+"
@@ -32,7 +35,10 @@ def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: st
     """Return why a cell is not taken; empty where it is."""
     if value is None:
         if not decimals and _grouped(cell):
-            return f"{cell!r}: of thousands, or of decimals?"
+            number = _number_of(cell)
+            other = "" if _MILLIONS.fullmatch(number) else f", or {number}0"
+            whole = re.sub("[.,]", "", number)
+            return f"{cell!r}: of thousands, or of decimals? write {whole}{other}"
         return f"{cell!r} is no {column.kind.quantity}"
     if column.unit == "%" and not column.spread and 0.0 < value.value <= 0.01 and "%" not in cell:
         return f"{cell!r}: a part of 1, or of 100?"
@@ -43,20 +49,35 @@ def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: st
     return ""
 
 
-def decimals_of(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn]) -> str:
-    """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it."""
-    cells = (
-        _CELL.fullmatch(row[c.place]) for row in rows for c in columns
-        if c.kind.quantity != "text" and not isinstance(row[c.place], NumberCell)
-    )  # fmt: skip
-    numbers = (found["number"].strip() for found in cells if found)
-    signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, numbers) if m}
+def decimals_of(
+    rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn], between: str = ""
+) -> str:
+    """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it.
+
+    Where all may be of thousands, a comma is that sign `between` whose cells are semicolons, and
+    in a column that has no other numbers each sign is, beside one such as 3000 without.
+    """
+    places = [c.place for c in columns if c.kind.quantity != "text"]
+    each = [[n for row in rows if (n := _number_of(row[place]))] for place in places]
+    every = [n for numbers in each for n in numbers]
+    signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, every) if m}
+    if not signs and not any(_MILLIONS.fullmatch(n) for n in every):
+        alike = any(_LONG.fullmatch(n) for n in every)
+        for numbers in each:
+            seen = {n[-4] if _GROUPED.fullmatch(n) else "" for n in numbers}
+            signs |= seen if alike and len(seen) == 1 else seen & {"," if between == ";" else ""}
+        signs.discard("")
     return signs.pop() if len(signs) == 1 else ""
 
 
-def _grouped(cell: str) -> bool:
+def _number_of(cell: str) -> str:
+    """What a cell has of a number as text."""
     found = None if isinstance(cell, NumberCell) else _CELL.fullmatch(cell)
-    return found is not None and _GROUPED.fullmatch(found["number"].strip()) is not None
+    return found["number"].strip() if found else ""
+
+
+def _grouped(cell: str) -> bool:
+    return _GROUPED.fullmatch(_number_of(cell)) is not None
 
 
 def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:

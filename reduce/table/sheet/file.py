@@ -101,13 +101,11 @@ def read_sheet(
     picks rows. Refused where no row of headers is understood, or a column names no unit.
     """
     checked_file(path, most=TABLE_BYTES, allowed="a sheet")
-    source, others, decimals, given = str(path), list[str](), "", given_columns(columns)
+    source, others, between, given = str(path), list[str](), "", given_columns(columns)
     if is_book(path):
         rows, head, others = _of_book(path, given, sheet)
     else:
         between, rows, head = _of_text(path.read_bytes(), source, given)
-        # where commas part the cells, points part no thousands
-        decimals = "." if between == "," and not any("," in c for row in rows for c in row) else ""
     for said in given:
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
@@ -118,7 +116,9 @@ def read_sheet(
         picked = rows_with(value, [row[place] for row in rows[head.end :]], source=source)
         below = [row if k in picked else [""] * len(row) for k, row in enumerate(rows[head.end :])]
         rows = [*rows[: head.end], *below]
-    decimals = decimals_of(rows[head.end :], kept) or decimals
+    # where commas part the cells, points part no thousands
+    points = between == "," and not any("," in c for row in rows for c in row)
+    decimals = decimals_of(rows[head.end :], kept, between) or "." * points
     trials, became, left, striker = trials_of(
         SheetRows(rows, head.end, kept, decimals, source), told
     )

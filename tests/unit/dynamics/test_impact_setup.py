@@ -130,6 +130,14 @@ laws = ["fitted"]
 """
 
 
+def test_a_ball_is_told_to_be_a_sphere_and_nothing_else(tmp_path: Path) -> None:
+    text = PEEN.replace("STRENGTH", "").replace('"sphere"', '"ball"')
+    with pytest.raises(InputErrors) as caught:
+        read_setup(write(tmp_path, text.replace("tip_radius_m", "radius_m")))
+    told = "strikers.ball.shape: 'ball' (allowed: 'rod' or 'sphere'; a ball is a sphere)"
+    assert [str(e).endswith(told) for e in caught.value.errors] == [True]
+
+
 def impact_of(tmp_path: Path, text: str) -> Impact:
     setup = read_setup(write(tmp_path, text))
     return blow_of(setup, [law_named(name) for name in setup.laws])[setup.laws[0]]

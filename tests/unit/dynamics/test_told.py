@@ -130,6 +130,7 @@ impact_speed_m_s = 3.0
         ups.append(up)
         downs.append(down)
     assert _cell(0.73, 0.01, 0.4, 0.9, 0.27, 0.73) == "0.73 +0.27 -0.73"
+    assert _cell(2.6043e-4, 1.9e-7) == "0.0002604 ± 1.9e-07"
     assert ups[0] == ups[1] > ups[2] > ups[3] == 0.0
     assert downs[0] > 0.03 > downs[1] == downs[3] == 0.0
 

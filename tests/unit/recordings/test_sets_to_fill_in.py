@@ -130,6 +130,7 @@ def test_a_flow_curve_gives_the_strength_and_comes_along(folder, tmp_path):
         ("plastic_strain,true_stress_Pa\n0,0\n1,4e8\n", "row 2.*true_stress_Pa: 0 .*from 1000"),
         ("plastic_strain,true_stress_Pa\n0,300\n1,4e8\n", r"row 2.*300 MPa would be 3e\+08"),
         ("plastic_strain,true_stress_Pa\n0,3e8\n20,4e8\n", "row 3.*20 % would be 0.2"),
+        ("plastic_strain,true_stress_Pa\n0,3e8\n8.76,4e8\n", "to 3; 8.76 % would be 0.0876"),
         ("plastic_strain,true_stress_Pa\n0,\n1,4e8\n", "row 2.*empty"),
     ],
 )

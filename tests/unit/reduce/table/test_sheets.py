@@ -99,6 +99,8 @@ def heights(sheet):
         ("Fallhöhe (mm);Stoßzahl\n500;0,5\n1.000;0,45\n", [0.5, 1.0]),
         ("drop height (mm);e\n500;0.5\n1,000;0.45\n0.750;0.4\n", [0.5, 1.0, 0.00075]),
         ("Höhe in mm;Dellentiefe in µm\n500;55,1\n2.000;121,0\n", [0.5, 2.0]),
+        ("Fallhöhe (m);Dellentiefe (µm)\n1,250;55\n2,500;80\n", [1.25, 2.5]),
+        ("drop height (m);dent depth (um)\n1.250;55\n2.500;1080\n", [1.25, 2.5]),
         ("drop height (in),dent depth (um)\n1.969,55\n3.937,80\n", [0.0500126, 0.0999998]),
     ],
 )
@@ -114,7 +116,8 @@ def test_a_number_that_may_be_a_thousand_is_told_and_its_row_left_out(tmp_path):
     file.write_text("drop height (mm);dent depth (um)\n500;55\n1.000;80\n2000;90\n")
     sheet = read_sheet(file)
     assert heights(sheet) == [0.5, 2.0]
-    assert "row 3, drop height (mm): '1.000': of thousands, or of decimals?" in sheet.left_out
+    told = "'1.000': of thousands, or of decimals? write 1000, or 1.0000"
+    assert f"row 3, drop height (mm): {told}" in sheet.left_out
     assert "row 3: left out, its drop height or speed is not read" in sheet.left_out
 
 
