@@ -15,7 +15,7 @@ from ..core.inputs.toml_input import parse_model
 from ..core.material import Pair
 from ..core.output import figure, write_figure
 from ..core.rig import FrictionTable, value_of
-from ..core.tables import frame, html_table, text_table
+from ..core.tables import frame, html_table, text_table, thinned
 from .case_file import Level, LoadTable, case_of, read_pair
 from .measured import MeasuredContact, measured
 
@@ -136,7 +136,7 @@ class Solved:
 
     def _shown(self) -> list[list[str]]:
         rows = self.rows()
-        cells = [[f"{x:.4g}" for x in row.values()] for row in rows[:: max(1, len(rows) // 12)]]
+        cells = [[f"{x:.4g}" for x in rows[i].values()] for i in thinned(len(rows))]
         return [list(rows[0]), *cells] if rows else [["no depth was reached"]]
 
     def __repr__(self) -> str:
