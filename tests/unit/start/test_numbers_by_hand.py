@@ -14,6 +14,7 @@ from dentscope.start.closing import _kept_out
 from dentscope.start.judged import Reference, _rise, departure
 from dentscope.start.measured import _dent
 from dentscope.start.metal_press import _clock, _press
+from dentscope.start.pair import Solved
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9)
 STEEL = Material(E=2e11, nu=0.3, Sy=4e8)
@@ -90,6 +91,14 @@ def test_the_rim_of_a_dent_lies_between_the_nodes(top) -> None:
     r = np.append(0.0, np.geomspace(1e-4, 1e-3, 20))
     found = dent(r, np.maximum(2e-6 - 200.0 * (r - top) ** 2, -1e-5))
     assert (found.rim_diameter, found.rim_height) == pytest.approx((2.0 * top, 2e-6))
+
+
+def test_a_solve_beyond_a_flow_curve_is_told() -> None:
+    short = Material(2e11, 0.3, 4e8, flow=Flow(tabulated([0.0, 0.1], [4e8, 5e8])))
+    last = SimpleNamespace(plastic_strain=np.array([0.2, 0.0, 0.3]), n_sphere_quads=1)
+    problem = SimpleNamespace(pair=Pair(HARD, short, 1e-3))
+    solution = SimpleNamespace(problem=problem, snapshots=(last,))
+    assert "a strain of 0.1, the contact reaches about 0.3:" in Solved(solution, None).remark
 
 
 @pytest.mark.parametrize("count", [0, 1, 5, 13, 23, 25, 61])
