@@ -13,6 +13,7 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.inputs.templates import CASE, write_new
 from ..core.output import csv_text, write_figure, write_file
+from ..core.tables import thinned
 from .shared.places import folder_option, misused, refuse_beside
 from .shared.terminal import new_console, say, show_table
 
@@ -210,7 +211,7 @@ def _show(console: Any, solution: Any, uncertainty: Any) -> None:
             f"{share[i]:.4f} ± {u.sphere_share[i]:.1g}",
             f"{c.hardness[i] / scale:.3g} ± {u.hardness[i] / scale:.1g}",
         )
-        for i in range(0, len(c.delta), max(1, len(c.delta) // 12))
+        for i in thinned(len(c.delta))
     ]
     show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     k = solution.counters

@@ -36,6 +36,12 @@ def parquet(table: Mapping[str, Any]) -> bytes:
     return content.getvalue()
 
 
+def thinned(count: int, most: int = 13) -> list[int]:
+    """Return the rows of a long table that are shown: the first, the last, evenly between."""
+    shown = min(count, most)
+    return [round(k * (count - 1) / max(shown - 1, 1)) for k in range(shown)]
+
+
 def text_table(rows: Sequence[Sequence[str]], *, numbers: bool = False) -> str:
     """Return rows as text in columns, those after the first on the right if they are numbers."""
     first, *others = (max(map(len, column)) for column in zip(*rows, strict=True))

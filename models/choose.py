@@ -8,11 +8,12 @@ delta_c and shows from 1.9 delta_c on (1.3.2), and delta_n = 110 is full plastic
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ..core.material import Pair
 from .base import CombinedLaw, ContactLaw
-from .hardening import HardeningLaw
+from .hardening import REPRESENTATIVE, HardeningLaw
 from .table import TableLaw
 from .turned import SimilarLaw, TurnedLaw
 
@@ -21,6 +22,9 @@ _INDENTATION_ABOVE = 1.7
 
 # limit: ratio of strengths below which the sphere alone is said to yield [-]
 _FLATTENING_BELOW = 0.6
+
+# limit: strain in the middle of a contact over Tabor's [-]; finite elements that harden: 4 to 6
+_DEEPEST_STRAIN = 3.0
 
 _ELASTIC_DEPTH = 1.9
 """Depth up to which a contact is elastic [critical depths] (Jackson and Green 2005, Eq. 9)."""
@@ -62,6 +66,28 @@ def demand(pair: Pair, depth: float) -> Demand:
     else:
         regime = "both bodies"
     return Demand(regime, w, math.sqrt(2.0 * depth / pair.R))
+
+
+def past_curves(pair: Pair, strains: Iterable[float]) -> Iterator[str]:
+    """Say whose flow curve ends before the plastic strain in it; of sphere and flat [-]."""
+    bodies = {"sphere": pair.sphere, "flat": pair.flat}
+    for (name, body), strain in zip(bodies.items(), strains, strict=True):
+        curve = body.flow.curve if body.flow else None
+        if curve and strain > curve.strain[-1]:
+            yield (
+                f"the {name}'s flow curve ends at a strain of {curve.strain[-1]:.3g}, the contact "
+                f"reaches about {strain:.2g}: constant beyond"
+            )
+
+
+def strains_under(pair: Pair, radius: float, left: tuple[float, float]) -> tuple[float, ...]:
+    """Largest plastic strains in sphere and flat, by contact radius and what stays in each [m].
+
+    Three of Tabor's 0.2 a/R in the body that keeps more, in the other by its part of that.
+    """
+    most = max(left)
+    strain = _DEEPEST_STRAIN * REPRESENTATIVE * radius / pair.R
+    return tuple(strain * x / most if most > 0.0 else 0.0 for x in left)
 
 
 def objection(law: ContactLaw, need: Demand) -> str:

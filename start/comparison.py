@@ -19,7 +19,7 @@ from ..core.output import figure
 from ..core.tables import frame, html_table, text_table
 from ..models import LAWS, DomainWarning, law_named
 from ..models.base import ContactLaw
-from ..models.choose import Demand, demand, follows_flow
+from ..models.choose import Demand, demand, follows_flow, past_curves, strains_under
 from .case_file import metal_keys, read_pair
 from .judged import CURVE_POINTS, ELASTIC, USABLE, Departure, Reference, judged
 
@@ -78,10 +78,13 @@ class LawComparison:
             deepest = self.reference.deepest
             beyond = f"; solved to Delta/R = {deepest:.2g}, not judged beyond"
             by = f"; judged at all depths by {self.reference.told}{beyond * (last > deepest)}"
-        return (
-            f"use: {use or 'none of these laws holds here'}\n"
-            f"at Delta/R = {last:g}: {deep}; regime: {self.need.regime}{by}"
-        )
+        end = self.last_rows()[0]
+        left = end.residual_sphere_m, end.residual_flat_m
+        return "\n".join((
+            f"use: {use or 'none of these laws holds here'}",
+            f"at Delta/R = {last:g}: {deep}; regime: {self.need.regime}{by}",
+            *past_curves(self.pair, strains_under(self.pair, end.contact_radius_m, left)),
+        ))  # fmt: skip
 
     def told(self, law: str) -> str:
         """How far a law is from the finite elements, in words."""

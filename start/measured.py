@@ -44,8 +44,9 @@ class Dent:
     - `load`: force there [N].
     - `left_sphere`, `left_flat`: permanent displacement of the pole, and of the flat below it [m].
     - `contact_diameter`: of the contact under the load [m].
-    - `rim_diameter`, `rim_height`: of the highest circle of the flat around the dent, and how far
-      it stands above the flat that was [m]; nan and 0 where the flat sinks in and has no rim.
+    - `rim_diameter`, `rim_height`: of the highest circle of the flat around the dent, between the
+      nodes, and how far it stands above the flat that was [m]; nan and 0 where the flat sinks in
+      and has no rim.
     - `brinell_by_contact`, `brinell_by_rim`: hardness after Brinell by either diameter [kgf/mm2];
       nan where the ball keeps more than 5 % of the permanent approach, or there is no such
       diameter.
@@ -163,18 +164,29 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
     least = max(1e-3 * u.residual_flat, _KEPT_ROUND_OFF * R)
     rises = u.residual_flat > 0.0 and u.crater_z[top] > least
-    rim = 2.0 * float(u.crater_r[top]) if rises else math.nan
+    rim, height = _crest(u.crater_r, u.crater_z, top) if rises else (math.nan, 0.0)
     of_the_flat = u.residual > 0.0 and u.residual_sphere <= RULES.ball_keeps * u.residual
     by_contact, by_rim = (
         brinell(load, 2.0 * R, d) if of_the_flat else math.nan for d in (contact, rim)
     )
     return Dent(
         depth=u.depth, load=load, left_sphere=u.residual_sphere, left_flat=u.residual_flat,
-        contact_diameter=contact, rim_diameter=rim,
-        rim_height=float(u.crater_z[top]) if rises else 0.0,
+        contact_diameter=contact, rim_diameter=rim, rim_height=height,
         brinell_by_contact=by_contact, brinell_by_rim=by_rim,
         energy_returned=_returned(solution, u),
     )  # fmt: skip
+
+
+def _crest(r: Array, z: Array, top: int) -> tuple[float, float]:
+    """Diameter and height [m] of the top of a parabola through the highest node and its neighbours.
+
+    That node itself jumps by a whole element where the next one rises above it.
+    """
+    if top == len(r) - 1:
+        return 2.0 * float(r[top]), float(z[top])
+    near = slice(top - 1, top + 2)
+    bend, slope, height = np.polyfit(r[near] - r[top], z[near], 2)
+    return float(2.0 * r[top] - slope / bend), float(height - 0.25 * slope**2 / bend)
 
 
 def loading_work(delta: Array, force: Array) -> Array:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .. import fem
 from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
@@ -15,7 +17,8 @@ from ..core.inputs.toml_input import parse_model
 from ..core.material import Pair
 from ..core.output import figure, write_figure
 from ..core.rig import FrictionTable, value_of
-from ..core.tables import frame, html_table, text_table
+from ..core.tables import frame, html_table, text_table, thinned
+from ..models.choose import past_curves
 from .case_file import Level, LoadTable, case_of, read_pair
 from .measured import MeasuredContact, measured
 
@@ -47,10 +50,13 @@ class Solved:
 
     @property
     def remark(self) -> str:
-        """What the level of the solve means for its numbers; often nothing."""
-        if self.level != "smoke":
-            return ""
-        return "level smoke: coarse, with steps in the curves; quick or production for numbers"
+        """What its level and an end of a flow curve mean for the numbers; often nothing."""
+        told = ["level smoke: coarse, with steps in the curves; quick or production for numbers"]
+        for last in self.solution.snapshots[-1:]:
+            bodies = np.split(last.plastic_strain, [last.n_sphere_quads])
+            strains = (float(strain.max(initial=0.0)) for strain in bodies)
+            told += past_curves(self.solution.problem.pair, strains)
+        return "\n".join(told if self.level == "smoke" else told[1:])
 
     def rows(self) -> list[dict[str, float]]:
         """Return the loading as rows, SI, each value with its uncertainty."""
@@ -136,7 +142,7 @@ class Solved:
 
     def _shown(self) -> list[list[str]]:
         rows = self.rows()
-        cells = [[f"{x:.4g}" for x in row.values()] for row in rows[:: max(1, len(rows) // 12)]]
+        cells = [[f"{x:.4g}" for x in rows[i].values()] for i in thinned(len(rows))]
         return [list(rows[0]), *cells] if rows else [["no depth was reached"]]
 
     def __repr__(self) -> str:

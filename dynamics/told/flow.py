@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...core.inputs.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
-from ...models.choose import follows_flow
+from ...models.choose import follows_flow, past_curves, strains_under
 from ...models.hardening import REPRESENTATIVE
 from ..mechanisms.around import weaker_table
 from ..mechanisms.strength.flow_stress import RATE
@@ -73,6 +73,9 @@ def flow_checks(
     yields = found.residual_m > 0.0 and scene.approach.speed > first_yield_speed(scene)
     if not (yields and radius > 0.0):
         return
+    if follows_flow(scene.law):
+        left = found.residual_sphere_m, found.residual_flat_m
+        yield from past_curves(scene.pair, strains_under(scene.pair, radius, left))
     rate = f"strain rate about {RATE * scene.approach.speed / radius:.2g} 1/s"
     if "strain-rate-hardening" in setup.content.get("mechanisms", {}):
         yield rate

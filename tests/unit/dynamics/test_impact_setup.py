@@ -217,12 +217,14 @@ def test_hardening_that_cannot_be_taken_is_refused_with_a_way(changes, words) ->
 
 
 def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
-    (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.2,3e8\n")
+    (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.01,3e8\n")
     base = PEEN.replace('laws = ["fitted"]\n', "")
     ours = impact_of(tmp_path, base.replace("STRENGTH", "Sy_Pa = 3e8") + 'laws = ["fitted"]\n')
     flat = base.replace("STRENGTH", 'flow_curve = "flow.csv"')
     setup = read_setup(write(tmp_path, flat))
     assert setup.laws == ("hardening", *DEFAULT_LAWS)
+    checks = blow_of(setup, [law_named("hardening")]).checks()
+    assert any("the flat's flow curve ends at a strain of 0.01" in line for line in checks)
     # a curve that does not rise is perfect plasticity
     assert impact_of(tmp_path, flat).restitution == pytest.approx(ours.restitution, rel=2e-3)
     hardens = base.replace(

@@ -4,8 +4,9 @@ import math
 
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.core.flow import Flow, tabulated
 from dentscope.models import LAWS
-from dentscope.models.choose import demand, objection
+from dentscope.models.choose import demand, objection, past_curves, strains_under
 
 HARD, SOFT = Material(E=200e9, nu=0.3, Sy=2e9), Material(E=200e9, nu=0.3, Sy=300e6)
 PAIRS = {
@@ -56,3 +57,14 @@ def test_hertz_may_be_used_up_to_19_critical_depths():
     onset = 1e-4 / demand(pair, 1e-4).w
     assert objection(LAWS["hertz"], demand(pair, 1.88 * onset)) == ""
     assert objection(LAWS["hertz"], demand(pair, 1.92 * onset)) == "elastic only"
+
+
+def test_a_flow_curve_that_ends_before_the_strains_under_the_contact_is_told():
+    measured = Material(200e9, 0.3, 300e6, flow=Flow(tabulated([0.0, 0.134], [300e6, 400e6])))
+    pair = Pair(measured, measured, 1e-2)
+    # a/R = 0.4: 3 * 0.2 * 0.4 in the flat, a tenth of it in the ball
+    assert strains_under(pair, 4e-3, (1e-5, 1e-4)) == pytest.approx((0.024, 0.24))
+    told = "curve ends at a strain of 0.134, the contact reaches about 0.24: constant beyond"
+    assert list(past_curves(pair, (0.024, 0.24))) == [f"the flat's flow {told}"]
+    assert list(past_curves(PAIRS["both bodies"], (0.024, 0.24))) == []
+    assert strains_under(pair, 4e-3, (0.0, 0.0)) == (0.0, 0.0)

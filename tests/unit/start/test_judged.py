@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.core.flow import Flow, tabulated
 from dentscope.dynamics.told.onset import first_yield
 from dentscope.models import LAWS, critical_depth
 from dentscope.start.comparison import compare_laws
@@ -42,6 +43,12 @@ def test_a_depth_beyond_what_was_solved_is_told(found):
     glass = Material(E=7.0e10, nu=0.22)
     elastic = compare_laws(Pair(glass, glass, 1e-3), law="fitted").finding
     assert "at Delta/R = 0.01: neither body yields; regime: elastic" in elastic
+
+
+def test_an_end_of_a_flow_curve_is_told_with_what_to_use():
+    short = Material(7.0e10, 0.33, 3.0e8, flow=Flow(tabulated([0.0, 0.05], [3.0e8, 3.5e8])))
+    found = compare_laws(Pair(short, STEEL, 2.5e-3), law="hardening", max_delta_over_R=0.05)
+    assert "the sphere's flow curve ends at a strain of 0.05, the contact" in found.finding
 
 
 def test_soft_bodies_are_judged_by_finite_strain_while_nothing_yields():
