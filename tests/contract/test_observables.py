@@ -31,6 +31,7 @@ CHOICES = {
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
     ("dynamics/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
     ("dynamics/told/band.py", "SWEPT"): "which numbers of a sweep have a band",
+    ("recordings/template.py", "_COLUMNS"): "which columns a set to fill in begins with",
     ("dynamics/told/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""
