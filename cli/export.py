@@ -135,6 +135,7 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
 def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[ExportedRow]:
     """Parameters for two such balls; none, with a line, where there are none."""
     from ..dynamics.told.discrete_elements import substitutes, two_balls
+    from ..models.turned import similar
 
     if ball.second is not None:
         if ball.second.radius < 0.0:
@@ -145,7 +146,7 @@ def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[E
         return []
     pair, half = two_balls(ball.pair, ball.mass)
     try:
-        return substitutes(law, pair, mass=half, speeds=speeds)
+        return substitutes(similar(law, 2.0), pair, mass=half, speeds=speeds)
     except InputError as error:
         say(f"no lines for two balls: {error}")
         return []

@@ -197,7 +197,7 @@ def table(rows: Sequence[ExportedRow], *, law: str, contact: str) -> list[tuple[
 def two_balls(pair: Pair, mass: float) -> tuple[Pair, float]:
     """Return pair and mass of two balls like this one as a ball on a flat of the same metal.
 
-    1/R = 1/R_1 + 1/R_2 and 1/m = 1/m_1 + 1/m_2: half the radius and half the mass. Elastic balls
-    follow it exactly. Where both yield, the law is that of a sphere and a flat of equal strength.
+    1/R = 1/R_1 + 1/R_2 and 1/m = 1/m_1 + 1/m_2: half the radius and half the mass. Their law is
+    `models.turned.similar` at a ratio of 2.
     """
     return Pair(pair.sphere, pair.sphere, 0.5 * pair.R), 0.5 * mass

@@ -118,7 +118,7 @@ def _balls(R: float, mass: float, two: bool) -> dict[str, str | float]:
         atoms.append(_atom(3, R, mass, 6.0 * R, 10.0 * R + apart, "$(-0.5*v_v)"))
     return {
         "what": "a ball drops on the flat" + ", two such balls meet" * two,
-        "whose": "two such balls: where both yield, of a sphere and a flat of equal strength",
+        "whose": "two such balls",
         "box": _box(20.0 * R), "skin": 0.2 * R, "atoms": "\n".join(atoms),
         "fixes": "fix flat all wall/gran granular ${flat} zplane 0.0 NULL",
         "printed": "$(vz[1]/v_v:%.4f)" + ", of two balls $((vz[3]-vz[2])/v_v:%.4f)" * two,
