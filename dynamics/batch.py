@@ -222,11 +222,12 @@ def _by_work(
 def _crater_width(scene: Scene, depth: Array, peak: Array) -> Array:
     """Width of a round crater of parabolic walls as `surface.scar` reads it [m]."""
     step, level = scene.instrument.scan_step, scene.instrument.scan_height
-    width = np.zeros_like(depth)
-    whole = _quick(scene.law, scene).contact_radius(scene.pair, peak)
-    seen = depth > np.maximum(level, NONE * whole)
+    width, seen = np.zeros_like(depth), depth > level
     if seen.any():
-        deep, radius = depth[seen], whole[seen]
+        radius = _quick(scene.law, scene).contact_radius(scene.pair, peak[seen])
+        left = depth[seen] > NONE * radius
+        seen[seen] = left
+        deep, radius = depth[seen], radius[left]
         if level == 0.0:
             width[seen] = 2.0 * radius
             return width

@@ -159,8 +159,10 @@ class SimilarLaw(ContactLaw):
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
         """Warn where the law itself would."""
-        pairs = [pair] if isinstance(pair, Pair) else list(pair)
-        self.law.warn_outside([self.alike(p)[0] for p in pairs], depth)
+        found = [self.alike(p) for p in ([pair] if isinstance(pair, Pair) else pair)]
+        # of many the deepest, by the least s
+        least = min(s for _, s in found)
+        self.law.warn_outside([other for other, _ in found], np.asarray(depth) / least)
 
 
 @lru_cache(maxsize=64)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ...core.inputs.rig_numbers import RigNumbers, solid_mass
+from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
 from ...dynamics import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
@@ -29,13 +29,10 @@ from ..rules import RULES
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error
 from ..unknowns.nuisances import GAUGE, LOAD_SCALE, RIM_SCALE, Nuisance, nuisances_of
 from ..unknowns.repeats import Drift, Followed
-from ..unknowns.wrong_number import WrongNumber, wrong_numbers
+from ..unknowns.wrong_number import WrongNumber, contradicting, wrong_numbers
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
-
-# limit: how well a density is known [-]: alloys of a kind
-_DENSITY = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +61,8 @@ class Problem:
     """Whether diameters of dents were measured, so that the contact's radius matters."""
     bench: Bench = field(default_factory=Bench)
     """What can be done next."""
+    contradicted: frozenset[str] = frozenset()
+    """Keys of masses and radii that contradict a ball's density, and could be so far off."""
 
     @property
     def n_nuisances(self) -> int:
@@ -130,21 +129,6 @@ class Problem:
         oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
         found = wrong_numbers(known, strikers, observed, fallen=fallen, oblique=oblique)
         return tuple(found)
-
-    @property
-    def contradicted(self) -> frozenset[str]:
-        """Keys of masses and radii that contradict a ball's density, and could be so far off."""
-        found = set()
-        of, spread = self.rig.of, {n.name: n.spread for n in self.nuisances}
-        for body in {f"strikers.{c.striker}" for c in self.conditions} - self.rig.solids:
-            radius, mass = f"{body}.tip_radius_m", f"{body}.mass_kg"
-            density = of.get(f"{body}.density_kg_m3", math.nan)
-            off = math.log(of[mass] / solid_mass(of[radius], density))
-            known = math.hypot(_DENSITY, spread.get(mass, 0.0), 3.0 * spread.get(radius, 0.0))
-            if of.get(f"{body}.length_m") == 0.0 and abs(off) > 5.0 * known:
-                wrong = {mass: abs(off), radius: abs(off) / 3.0}
-                found |= {key for key, x in wrong.items() if x < math.log(RULES.wrong_most)}
-        return frozenset(found)
 
     @property
     def scales(self) -> tuple[tuple[str, int], ...]:
@@ -273,6 +257,7 @@ def problem_of(
     problem = Problem(
         recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR, bench=setup.rig,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
+        contradicted=contradicting({c.striker: setup.strikers[c.striker] for c in conditions}),
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)

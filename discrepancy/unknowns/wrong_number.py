@@ -16,6 +16,7 @@ from typing import TypeGuard
 
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
+from ...core.rig import StrikerTable
 from ...dynamics.mechanisms.base import (
     Constants,
     Mechanism,
@@ -25,10 +26,14 @@ from ...dynamics.mechanisms.base import (
     Values,
 )
 from ...dynamics.scene import Scene
+from ...recordings.checks.limits import geometric_mass
 from ..rules import RULES
 
 WRONG = "wrong-input:"
 """Begins the name of every such explanation; the rest is the number's key."""
+
+# limit: how well a density is known [-]: alloys of a kind
+_DENSITY = 0.02
 
 _SOURCE = "slips of sheets: units, a diameter for a radius, another temper (module's docstring)"
 _OF_TARGET = {
@@ -153,6 +158,21 @@ class WrongAngle(WrongNumber):
             return scene
         angle = stated + values["angle_deg_turned"] * (math.pi / 2.0 - 2.0 * stated)
         return scene.with_(approach=scene.approach.inclined(angle))
+
+
+def contradicting(strikers: Mapping[str, StrikerTable]) -> frozenset[str]:
+    """Return keys of masses and radii that contradict a ball's density, and could be so far off."""
+    found = set()
+    for name, ball in strikers.items():
+        mass = geometric_mass(ball)
+        if mass is None or ball.shape == "rod":
+            continue
+        off = abs(math.log(ball.mass_kg.value / mass.low))
+        if off > 5.0 * math.hypot(_DENSITY, ball.mass_kg.relative, mass.relative):
+            powers = ("mass_kg", 1), ("tip_radius_m", 3)
+            could = (key for key, n in powers if off / n < math.log(RULES.wrong_most))
+            found |= {f"strikers.{name}.{key}" for key in could}
+    return frozenset(found)
 
 
 def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:

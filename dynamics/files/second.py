@@ -57,14 +57,18 @@ class SecondSphere(StruckSphere):
 
     def faced(self, law: ContactLaw, R: float) -> ContactLaw:
         """Return the law as the two face each other, R [m] that of both: the smaller has it."""
-        own = 1.0 / (1.0 / R - 1.0 / self.radius)
-        law = similar(law, self._smaller(R) / R)
-        return turned(law) if 0.0 < self.radius < own else law
+        smaller, struck = self._smaller(R)
+        law = similar(law, smaller / R)
+        return turned(law) if struck else law
 
-    def _smaller(self, R: float) -> float:
-        """Radius of the sphere of the larger curvature, R being that of both [m]."""
+    def _smaller(self, R: float) -> tuple[float, bool]:
+        """Radius of the sphere of the larger curvature, R being that of both; whether it is this.
+
+        Of equal ones, and in a seat, it is the other.
+        """
         own = 1.0 / (1.0 / R - 1.0 / self.radius)
-        return min(own, self.radius) if self.radius > 0.0 else own
+        struck = 0.0 < self.radius < own
+        return self.radius if struck else own, struck
 
     def departure(self, law: ContactLaw, pair: Pair, delta: float | Array) -> Array:
         """Return how far the force of a law of theirs may be off where both yield, relative, (...).
@@ -79,7 +83,7 @@ class SecondSphere(StruckSphere):
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(depth)
         own, there = as_made(law, pair)
-        radii = np.abs(radius_error(pair, depth, self._smaller(pair.R) / pair.R))
+        radii = np.abs(radius_error(pair, depth, self._smaller(pair.R)[0] / pair.R))
         if not isinstance(own, SimilarLaw):
             return np.asarray(radii)
         flat = 1.0 - (own.scale(there) - 1.0) / (own.ratio - 1.0)

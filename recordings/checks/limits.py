@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ...core.inputs.rig_numbers import solid_mass
 from ...core.rig import Quantity, StrikerTable, TargetTable
 from ..rules import RULES
 
@@ -54,7 +55,7 @@ def second_mass(target: TargetTable) -> Range | None:
 
 
 def _solid_sphere(rho: Quantity, r: Quantity) -> Range:
-    m = rho.value * 4.0 / 3.0 * math.pi * r.value**3
+    m = solid_mass(r.value, rho.value)
     return Range(m, m, math.hypot(rho.relative, 3.0 * r.relative))
 
 

@@ -1,9 +1,6 @@
-"""Answers of the diagnosis and of the plainest rule, from what `dentscope proof peers` kept.
+"""Answers of the diagnosis, sealed or open: diagnosed set by set; goes on where it was stopped.
 
-`python -m dentscope.studies.challenge.own challenge/open .`
-
-Of sealed sets, which no rule is compared on, the diagnosis alone answers; it goes on where it was
-stopped: `python -m dentscope.studies.challenge.own challenge/sealed . --sealed`.
+`python -m dentscope.studies.challenge.own challenge/sealed .`
 """
 
 from __future__ import annotations
@@ -12,38 +9,23 @@ import argparse
 import hashlib
 import json
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 
 from ...core.output import csv_text, write_file
 from ...discrepancy import diagnose
 from ...discrepancy.unknowns.wrong_number import WRONG
 from ...recordings import read
-from ..proof.rivals import ANOTHER_PAIR, DIAGNOSIS, OUTSIDE, read_lines
+from ..proof.rivals import ANOTHER_PAIR, OUTSIDE
 from .answers import COLUMNS
 from .archive import sets_of
 
-ANSWERED = {DIAGNOSIS: "diagnosis.csv", "BIC, 3 % floor": "bic.csv"}
-"""Who answers, and the file of the answers."""
 
+def answer(folder: Path, out: Path) -> str:
+    """Write `out`/diagnosis.csv of a part; return its SHA-256.
 
-def write_own(folder: Path, out: Path) -> None:
-    """Write a file of answers for each of `ANSWERED`.
-
-    `folder`: a part of the challenge with its peers.jsonl; `out`: for the files.
+    What is diagnosed lies in `out`/diagnosis.jsonl, a line a set.
     """
-    lines = sorted(read_lines(folder), key=lambda line: str(line["set"]))
-    for who, name in ANSWERED.items():
-        odds = {str(line["set"]): line["said"][who]["odds"] for line in lines}
-        write_file(out / name, _answers(odds))
-
-
-def answer_sealed(folder: Path, out: Path) -> str:
-    """Diagnose each set of a part and write the answers; return their SHA-256.
-
-    What is answered lies in `out`/sealed.jsonl, a line a set.
-    """
-    kept = out / "sealed.jsonl"
+    kept = out / "diagnosis.jsonl"
     lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
     odds = {one["set"]: one["odds"] for one in map(json.loads, lines)}
     for name in sets_of(folder):
@@ -51,20 +33,15 @@ def answer_sealed(folder: Path, out: Path) -> str:
             odds[name] = dict(diagnose(read(folder / "sets" / name)).probabilities)
             with kept.open("a", encoding="utf-8") as file:
                 file.write(json.dumps({"set": name, "odds": odds[name]}) + "\n")
-    text = _answers(odds)
-    write_file(out / ANSWERED[DIAGNOSIS], text)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _answers(odds: Mapping[str, dict[str, float]]) -> str:
-    """The table of answers, by set."""
     rows = [
         (name, told, f"{p:.6g}")
         for name in sorted(odds)
         for told, p in _listed(odds[name]).items()
         if p >= 5e-7
     ]
-    return csv_text(rows, header=COLUMNS)
+    text = csv_text(rows, header=COLUMNS)
+    write_file(out / "diagnosis.csv", text)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _listed(odds: dict[str, float]) -> dict[str, float]:
@@ -83,12 +60,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--sealed", action="store_true", help="diagnose anew, compare nothing")
     given = parser.parse_args()
-    if given.sealed:
-        sys.stdout.write(answer_sealed(given.folder, given.out) + "\n")
-    else:
-        write_own(given.folder, given.out)
+    sys.stdout.write(answer(given.folder, given.out) + "\n")
 
 
 if __name__ == "__main__":

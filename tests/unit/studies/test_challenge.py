@@ -224,36 +224,28 @@ def test_scores_by_hand() -> None:
     assert mark.ln_p == math.log(0.002)
 
 
-def test_own_answers_are_what_was_kept(tmp_path) -> None:
-    wrong = {"wrong-input:target.Sy_Pa": 0.125, "tilt+wrong-input:target.Sy_Pa": 0.125}
-    odds = {"tilt": 0.5, "baseline": 0.25, "adhesion": 1e-9} | wrong
-    said = {who: {"verdict": "", "names": [], "odds": odds} for who in own.ANSWERED}
-    line = {"set": "open-001", "source": "s", "said": said}
-    (tmp_path / "peers.jsonl").write_text(json.dumps(line) + "\n")
-    own.write_own(tmp_path, tmp_path)
-    found = answers.read_answers(tmp_path / "bic.csv", ["open-001"])
-    unlisted = {"outside-library": 0.125, "another pair": 0.125}
-    assert found == {"open-001": {"tilt": 0.5, "baseline": 0.25} | unlisted}
-
-
-def test_own_answers_of_sealed_sets_go_on_where_they_were_stopped(
-    challenge, tmp_path, monkeypatch
-) -> None:
+def test_own_answers_go_on_where_they_were_stopped(challenge, tmp_path, monkeypatch) -> None:
+    """By the names of the list, which has none for a wrong number of the sheet."""
     asked, sets = [], tmp_path / "part" / "sets"
     sets.mkdir(parents=True)
     for name in ("sealed-2001", "sealed-2002"):
         (sets / name).symlink_to(challenge / "sealed" / "sets" / name)
-    (tmp_path / "sealed.jsonl").write_text('{"set": "sealed-2002", "odds": {"tilt": 1.0}}\n')
+    wrong = {"wrong-input:target.Sy_Pa": 0.125, "tilt+wrong-input:target.Sy_Pa": 0.125}
+    odds = {"tilt": 0.5, "baseline": 0.25, "adhesion": 1e-9} | wrong
+    line = {"set": "sealed-2002", "odds": odds}
+    (tmp_path / "diagnosis.jsonl").write_text(json.dumps(line) + "\n")
     monkeypatch.setattr(
         own, "diagnose", lambda found: asked.append(found.name) or SimpleNamespace(
             probabilities={"baseline": 1.0}
         ),
     )  # fmt: skip
-    digest = own.answer_sealed(tmp_path / "part", tmp_path)
+    digest = own.answer(tmp_path / "part", tmp_path)
     assert asked == ["sealed-2001"]
-    told = tmp_path / "diagnosis.csv"
-    assert told.read_text() == f"{HEAD}sealed-2001,baseline,1\nsealed-2002,tilt,1\n"
-    assert digest == digest_of(told)
+    assert digest == digest_of(tmp_path / "diagnosis.csv")
+    found = answers.read_answers(tmp_path / "diagnosis.csv", ["sealed-2001", "sealed-2002"])
+    unlisted = {"outside-library": 0.125, "another pair": 0.125}
+    assert found["sealed-2001"] == {"baseline": 1.0}
+    assert found["sealed-2002"] == {"tilt": 0.5, "baseline": 0.25} | unlisted
 
 
 @pytest.fixture(scope="module")
