@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from .assemble import bulk_forces
 from .contact import Surfaces
 from .elements import Elements, State
 from .material import EXACT, laws_of
-from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
+from .mesh import Layers, Mesh, Zone, contact_mesh, ladder_rings, layers_of, outer_rings
 from .problem import Accuracy, Clock, ContactProblem
 from .rules import RULES
 
@@ -56,6 +57,11 @@ class Discretisation:
     def n_dofs(self) -> int:
         """Degrees of freedom, driven and held ones included."""
         return 2 * len(self.mesh.points)
+
+    @cached_property
+    def layers(self) -> tuple[Layers, Layers]:
+        """Layers of the sphere and of the half-space."""
+        return layers_of(self.mesh, sphere=True), layers_of(self.mesh, sphere=False)
 
     @property
     def slave_radius(self) -> Array:

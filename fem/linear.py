@@ -29,6 +29,8 @@ from .rules import RULES
 # limit: most steps of GMRES with old factors [-]
 _KRYLOV = 12
 
+_HELD, _OUTSIDE = -1, -2
+
 Solve = Callable[[Array], Array]
 
 
@@ -63,24 +65,26 @@ def _scatter(data, position, tangent):
 
 
 @njit(cache=True)
-def _scatter_triplets(data, indptr, indices, number, row, col, value, n):
+def _scatter_triplets(data, indptr, indices, number, row, col, value, n, places):
+    """Add the triplets; `places` keeps each one's row, column and place for the next time."""
     for k in range(n):
-        i = number[row[k]]
-        j = number[col[k]]
-        if i < 0 or j < 0:
-            continue
-        low = indptr[j]
-        high = indptr[j + 1]
-        while low < high:
-            middle = (low + high) // 2
-            if indices[middle] < i:
-                low = middle + 1
-            else:
-                high = middle
-        if low >= indptr[j + 1] or indices[low] != i:
-            return False
-        data[low] += value[k]
+        if places[k, 0] != row[k] or places[k, 1] != col[k]:
+            at = _place(indptr, indices, number[row[k]], number[col[k]])
+            if at == _OUTSIDE:
+                return False
+            places[k, 0], places[k, 1], places[k, 2] = row[k], col[k], at
+        if places[k, 2] >= 0:
+            data[places[k, 2]] += value[k]
     return True
+
+
+@njit(cache=True)
+def _place(indptr, indices, i, j):
+    """Where the matrix has row i and column j; negative: held, or outside of the pattern."""
+    if i < 0 or j < 0:
+        return _HELD
+    at = indptr[j] + np.searchsorted(indices[indptr[j] : indptr[j + 1]], i)
+    return at if at < indptr[j + 1] and indices[at] == i else _OUTSIDE
 
 
 class LinearSystem:
@@ -125,6 +129,7 @@ class LinearSystem:
         """Set the matrix from the element tangents (n_elements, 8, 8) and the contact triplets."""
         if self.n_patterns == 0 or not self._fill(tangent, triplets, n_triplets):
             self._new_pattern(surfaces, contact)
+            self._places = np.full((len(triplets.row), 3), -1, np.int32)
             if not self._fill(tangent, triplets, n_triplets):
                 raise AssertionError("contact couplings outside a fresh pattern")
 
@@ -135,7 +140,7 @@ class LinearSystem:
         return bool(
             _scatter_triplets(
                 m.data, m.indptr, m.indices, self._number,
-                triplets.row, triplets.col, triplets.value, n,
+                triplets.row, triplets.col, triplets.value, n, self._places,
             )
         )  # fmt: skip
 
@@ -170,7 +175,7 @@ class LinearSystem:
         self._position = np.where((i >= 0) & (j >= 0), place, -1)
 
     def _contact_keys(self, surfaces: Surfaces, contact: ContactState) -> Integers:
-        active = np.flatnonzero(contact.pressure > 0.0)
+        active = np.flatnonzero(contact.pressure)
         last = min(int(1.3 * (active[-1] if len(active) else 0)) + 10, len(surfaces.slave) - 1)
         rows, cols = [], []
         for a in range(last + 1):

@@ -18,7 +18,7 @@ from .assemble import advance
 from .discretise import discretise
 from .elements import State
 from .material import EXACT
-from .mesh import Layers, Zone
+from .mesh import Zone
 from .newton import Solver, Timers
 from .path import MOST_CUTS, PathPoint, Record, accept, extrapolate
 from .problem import Accuracy, ContactProblem
@@ -63,7 +63,6 @@ class Loading:
         self._onset = problem.pair.first_yield
         self._stops = _stops(problem, self._onset)
         self._radius = np.sqrt(self._stops[0])  # of the contact that the mesh is made for
-        self._layers: list[Layers] = []  # of that mesh, once a transfer has walked through it
         self._beyond = 0  # steps past the end
 
     def points(self) -> Iterator[PathPoint | Outcome]:
@@ -181,7 +180,8 @@ class Loading:
             n = max(1, int(np.ceil(np.log(goal / point.delta) / np.log(ratio) - 1e-9)))
             delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)
             reach = delta / point.delta if before is None else (delta - point.delta) / last_step
-            guess = extrapolate(point, before, reach)
+            growth = (point.delta + delta) / (2.0 * point.delta - last_step)
+            guess = extrapolate(point, before, reach, growth**RULES.outwards)
             found = point.balanced(guess, delta)
             if found is not None:
                 return accept(point, found, delta), ratio
@@ -199,7 +199,7 @@ class Loading:
             return point, before
         was, self._radius = self._radius, radius
         solver = self._solver()
-        transfer = Transfer(point.grid, solver.grid, self._layers)
+        transfer = Transfer(point.grid, solver.grid)
         guess = transfer.displacements(point.equilibrium.u)
         state = transfer.state(point.state, guess)
         # no time passes: what feels the rate can't flow
@@ -213,7 +213,6 @@ class Loading:
         if found is None:
             self._radius = was  # it is tried again after the next step
             return point, before
-        self._layers = transfer.after
         self.tally.leave(point.solver)
         self.tally.meshes += 1
         state, stored = advance(solver.elements, found.u, state=state, rule=solver.rule)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..core.arrays import Array
+from ..core.arrays import Array, Mask
 from .assemble import DISTORTED, bulk_forces
 from .contact import ContactState, Grip, Triplets, contact_forces, take_hold
 from .discretise import Discretisation
@@ -83,6 +83,7 @@ class Solver:
         self._triplets = Triplets.for_surfaces(self.grid.surfaces)
         self._seconds = math.inf
         self._grip: Grip | None = None
+        self._closed: Mask | None = None
 
     def grip(self, u: Array, traction: Array) -> Grip:
         """Return how the surfaces hold at displacements `u` and nodal tractions (n_slave,)."""
@@ -96,12 +97,16 @@ class Solver:
         delta: float,
         seconds: float = math.inf,
         grip: Grip | None = None,
+        closed: Mask | None = None,
     ) -> Equilibrium | None:
         """Equilibrium at approach `delta`, starting from displacements `guess`; none: failed.
 
-        `state` and `grip` are those of the last accepted step, `seconds` ago.
+        `state` and `grip` are those of the last accepted step, `seconds` ago. Slave nodes that are
+        `closed` stay so until forces balance; only where that takes a pull may they open. A guess
+        lifts or overlaps the surfaces by more than the penalty does: on the way to it nodes would
+        open and close.
         """
-        self._seconds, self._grip = seconds, grip
+        self._seconds, self._grip, self._closed = seconds, grip, closed
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
@@ -110,7 +115,11 @@ class Solver:
             if now is None:
                 return None
             if iteration and self._converged(now, next_move, delta):
-                return Equilibrium(u, now.contact, self._reaction(now), iteration)
+                if now.contact.pressure.min() >= 0.0:
+                    return Equilibrium(u, now.contact, self._reaction(now), iteration)
+                self._closed = None
+                now = self._evaluate(u, state)
+                continue
             if iteration == 0:
                 first = self._unbalanced(now)
             elif iteration == RULES.hopeless_after and self._unbalanced(now) > 0.5 * first:
@@ -135,8 +144,9 @@ class Solver:
         bulk = force.copy()
         x = self.grid.mesh.points + u.reshape(-1, 2)
         contact, n = contact_forces(
-            self.surfaces, x, force=force, tangent=self._triplets, grip=self._grip
-        )
+            self.surfaces, x, force=force, tangent=self._triplets, grip=self._grip,
+            closed=self._closed,
+        )  # fmt: skip
         self.timers.cpu_contact_s += time.process_time() - middle
         if contact is None:
             return None

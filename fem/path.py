@@ -14,6 +14,7 @@ from .assemble import advance
 from .discretise import Discretisation
 from .elements import State
 from .newton import Equilibrium, Solver
+from .remesh import moved_outwards
 from .results.measure import Reading, read
 from .rules import RULES
 
@@ -52,22 +53,30 @@ class PathPoint:
         seconds = self.grid.clock.seconds(self.delta, delta)
         now = self.equilibrium
         grip = self.solver.grip(now.u, now.contact.traction)
+        closed = now.contact.pressure > 0.0 if delta > self.delta else None
         return self.solver.equilibrium(
-            guess, state=self.state, delta=delta, seconds=seconds, grip=grip
+            guess, state=self.state, delta=delta, seconds=seconds, grip=grip, closed=closed
         )
 
 
-def extrapolate(point: PathPoint, before: Array | None, reach: float) -> Array:
+def extrapolate(
+    point: PathPoint, before: Array | None, reach: float, outwards: float = 1.0
+) -> Array:
     """First guess of the displacements after a step from `point`.
 
     - `before`: displacements at the point before, on the same mesh; none: in proportion to the
       approach.
     - `reach`: the step over the last one; without a last one, the approach over that of `point`.
+    - `outwards`: factor by which the last increment is taken away from the pole, as the edge of the
+      contact has moved.
     """
     u = point.equilibrium.u
     if before is None:
         return u * reach
-    return np.asarray(u + min(reach, RULES.stretch) * (u - before))
+    last = u - before
+    if outwards != 1.0:
+        last = moved_outwards(point.grid, last, outwards)
+    return np.asarray(u + min(reach, RULES.stretch) * last)
 
 
 def accept(point: PathPoint, found: Equilibrium, delta: float) -> PathPoint:

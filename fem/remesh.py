@@ -14,7 +14,6 @@ solution, at the same approach, sees to that.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
@@ -24,7 +23,7 @@ from ..core.arrays import Array, Integers, Mask
 from .discretise import Discretisation
 from .elements import State, deformation, radius_at_rest
 from .material import exponential, log_strain
-from .mesh import Layers, Mesh, layers_of
+from .mesh import Layers, Mesh
 
 _INNER, _OUTER = 0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)
 _BODIES = (True, False)
@@ -35,22 +34,11 @@ class Transfer:
 
     - `old`, `new`: two discretisations of one problem, made for different zones; the innermost
       block of the new one is not the smaller.
-    - `before`: `after` of the transfer to the old one, if there was one: saves walking through its
-      mesh.
-
-    Attributes
-    ----------
-    after
-        Layers of the new discretisation's bodies.
     """
 
-    def __init__(
-        self, old: Discretisation, new: Discretisation, before: Sequence[Layers] = ()
-    ) -> None:
+    def __init__(self, old: Discretisation, new: Discretisation) -> None:
         self.old, self.new = old, new
-        self.after = [layers_of(new.mesh, sphere=sphere) for sphere in _BODIES]
-        before = before or [layers_of(old.mesh, sphere=sphere) for sphere in _BODIES]
-        self._layers = list(zip(before, self.after, strict=True))
+        self._layers = list(zip(old.layers, new.layers, strict=True))
 
     def displacements(self, u: Array) -> Array:
         """Displacements (2 n_nodes,) on the new mesh."""
@@ -101,6 +89,15 @@ class Transfer:
         parts = out.reshape(-1, 4, 6)
         strain, peeq, work = (np.ascontiguousarray(parts[..., k]) for k in (slice(4), 4, 5))
         return strain, peeq, work
+
+
+def moved_outwards(grid: Discretisation, values: Array, factor: float) -> Array:
+    """Nodal values (2 n_nodes,) taken away from the pole; the innermost block keeps its own."""
+    moved = values.reshape(-1, 2).copy()
+    for layers in grid.layers:
+        level = layers.level
+        moved[layers.nodes] = _linear(level, moved[layers.nodes], level / factor)
+    return moved.reshape(-1)
 
 
 def _lines_of_points(layers: Layers, place: Integers) -> Integers:

@@ -26,7 +26,7 @@ class FemRules:
     forcing: float = rule(0.005, "relative correction that a direction may lack [-]")
     krylov_residual: float = rule(0.2, "relative residual that a direction may leave [-]")
     refactor_after: int = rule(
-        7, "steps of GMRES after which the next matrix is factorised anew [-]"
+        5, "steps of GMRES after which the next matrix is factorised anew [-]"
     )
     pattern_reach: int = rule(
         3, "master nodes beyond the segments in use that the matrix already couples [-]"
@@ -83,6 +83,12 @@ class FemRules:
     )
     step_cut: float = rule(0.4, "part of its logarithm with which a failed step is tried again [-]")
     stretch: float = rule(2.5, "largest factor by which the last increment is extrapolated [-]")
+    outwards: float = rule(
+        0.2,
+        "power of the approach by which the last increment moves outwards with the contact [-]",
+        "the radius grows by the power 0.5, but values between rings cost what they bring: fewest "
+        "iterations",
+    )  # fmt: skip
     deepest: float = rule(0.5, "largest approach that can be asked for [R]")
     gap_edges: int = rule(5, "open surface elements that the fit of the gap looks at [-]")
     edge_candidates: int = rule(161, "places of the contact edge that the fit of the gap tries [-]")

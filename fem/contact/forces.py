@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ...core.arrays import Array, Integers
+from ...core.arrays import Array, Integers, Mask
 from ...core.unowned import unowned
 from .friction import Grip, rub, slip_of
 from .gap import SlavePoints, find_gaps
@@ -60,7 +60,7 @@ class Triplets(NamedTuple):
 
 
 @njit(cache=True)
-def _find_pressures(s, gap, pressure):
+def _find_pressures(s, gap, closed, pressure):
     """Fill the nodal pressures from the gaps; total force and energy."""
     n_edges = gap.shape[0]
     pressure[:] = 0.0
@@ -72,7 +72,8 @@ def _find_pressures(s, gap, pressure):
     energy = 0.0
     total = 0.0
     for A in range(n_edges + 1):
-        pressure[A] = max(0.0, -s.stiffness[A] * pressure[A] / s.mass[A])
+        p = -s.stiffness[A] * pressure[A] / s.mass[A]
+        pressure[A] = p if closed[A] else max(0.0, p)
         energy += 0.5 * s.mass[A] * pressure[A] ** 2 / s.stiffness[A]
         total += s.mass[A] * pressure[A]
     return total, energy
@@ -161,7 +162,7 @@ def _add_stiffness(s, grip, x, pressure, changes, out, n):
     """Append the tangent of pressures and tractions to the `n` triplets in `out`; how many now."""
     sums = Changes(np.empty(_SUPPORT, np.int64), np.empty(_SUPPORT), np.empty(_SUPPORT))
     for A in range(len(pressure)):
-        if pressure[A] <= 0.0:
+        if pressure[A] == 0.0:
             continue
         m = _gather(A, s, changes, sums)
         k = s.stiffness[A] * s.mass[A]
@@ -173,13 +174,13 @@ def _add_stiffness(s, grip, x, pressure, changes, out, n):
                 out.col[n] = sums.dof[j]
                 out.value[n] = k * sums.b[i] * sums.dg[j]
                 n += 1
-        if len(grip.n_dofs) > 0:
+        if len(grip.n_dofs) > 0 and pressure[A] > 0.0:
             n = _add_friction(A, s, grip, x, pressure, sums, m, out, n)
     return n
 
 
 @njit(cache=True)
-def _evaluate(s, grip, x, points, pressure, traction, force, with_tangent, out):
+def _evaluate(s, grip, x, closed, points, pressure, traction, force, with_tangent, out):
     """Fill points, pressures and tractions, add forces, write triplets.
 
     Force, energy, work lost in sliding, how many triplets.
@@ -194,7 +195,7 @@ def _evaluate(s, grip, x, points, pressure, traction, force, with_tangent, out):
     xm = x[s.master]
     if not find_gaps(s, x[s.slave], xm, points):
         return 0.0, 0.0, 0.0, -1
-    total, energy = _find_pressures(s, points.gap, pressure)
+    total, energy = _find_pressures(s, points.gap, closed, pressure)
     n_edges = len(pressure) - 1
     changes = Changes(
         np.empty((n_edges, 3, LOCAL), np.int64),
@@ -220,10 +221,12 @@ def contact_forces(
     force: Array,
     tangent: Triplets | None = None,
     grip: Grip | None = None,
+    closed: Mask | None = None,
 ) -> tuple[ContactState | None, int]:
     """Add the contact forces at the current coordinates `x` (n_nodes, 2) to `force`.
 
-    With a `grip`, those of friction too.
+    With a `grip`, those of friction too. Slave nodes that are `closed`, shape (n_slave,), hold the
+    other surface even where that takes a pull: a pressure below 0.
 
     Returned: the contact's state, none when a slave point has left the master surface, and the
     number of triplets written into `tangent`.
@@ -232,8 +235,10 @@ def contact_forces(
     pressure = np.empty(len(surfaces.slave))
     traction = np.empty(len(surfaces.slave))
     room = Triplets.room(0) if tangent is None else tangent
+    if closed is None:
+        closed = np.zeros(len(pressure), np.bool_)
     total, energy, lost, n = _evaluate(
-        surfaces, grip or Grip.none(), x, points, pressure, traction, force,
+        surfaces, grip or Grip.none(), x, closed, points, pressure, traction, force,
         tangent is not None, room,
     )  # fmt: skip
     if n < 0:

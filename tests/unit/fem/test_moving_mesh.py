@@ -12,8 +12,8 @@ from dentscope.fem.discretise import discretise, with_linear
 from dentscope.fem.elements import State
 from dentscope.fem.loading import Loading, Tally
 from dentscope.fem.material import EXACT
-from dentscope.fem.mesh import Zone, ladder_rings, layers_of
-from dentscope.fem.remesh import Transfer
+from dentscope.fem.mesh import Zone, ladder_rings
+from dentscope.fem.remesh import Transfer, moved_outwards
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
 ELASTIC = Material(E=200e9, nu=0.3)
@@ -52,7 +52,7 @@ def test_meshes_for_two_zones_share_core_end_and_fine_rings():
 def test_layers_cover_all_but_the_innermost_block(grids):
     for grid in grids:
         mesh = grid.mesh
-        layers = [layers_of(mesh, sphere=sphere) for sphere in (True, False)]
+        layers = grid.layers
         met = np.concatenate([x.quads.ravel() for x in layers])
         assert len(np.unique(met)) == len(met)
         core = np.setdiff1d(np.arange(len(mesh.quads)), met)
@@ -73,9 +73,9 @@ def test_transfer_to_the_same_mesh_copies_all_but_the_innermost_block(grids):
     state, _ = advance(grid.elements, u, state=State.virgin(len(grid.elements.conn)), rule=EXACT)
     assert state.peeq.max() > 0.0
     carry = Transfer(grid, grid)
-    layers = [layers_of(grid.mesh, sphere=sphere) for sphere in (True, False)]
-    nodes = np.concatenate([x.nodes.ravel() for x in layers])
-    quads = np.concatenate([x.quads.ravel() for x in layers])
+    nodes, quads = (
+        np.concatenate([getattr(x, n).ravel() for x in grid.layers]) for n in ("nodes", "quads")
+    )
     carried = carry.displacements(u).reshape(-1, 2)[nodes]
     assert np.array_equal(carried, u.reshape(-1, 2)[nodes])
     again = carry.state(state, u)
@@ -92,6 +92,16 @@ def test_a_linear_field_is_carried_into_the_innermost_block_and_the_new_rings(gr
     near = np.hypot(*new.mesh.points.T) < 0.3
     scale = 3e-4 * new.mesh.rings[0]
     assert carried.reshape(-1, 2)[near] == pytest.approx(exact[near], rel=2e-3, abs=1e-4 * scale)
+
+
+def test_an_increment_moves_outwards_with_the_contact(grids):
+    """A tenth on, what stood at 1 stands at 1.1; the innermost block keeps its own."""
+    mesh = grids[0].mesh
+    chord = np.hypot(*mesh.points.T)
+    moved = moved_outwards(grids[0], np.repeat(chord, 2), 1.1).reshape(-1, 2)
+    inner, near = chord < 0.999 * mesh.rings[0], (chord > 1.2 * mesh.rings[0]) & (chord < 0.3)
+    assert moved[near] == pytest.approx(np.stack([chord, chord], axis=1)[near] / 1.1, rel=1e-9)
+    assert np.array_equal(moved[inner, 0], chord[inner])
 
 
 def test_what_has_never_yielded_keeps_no_memory_of_the_old_mesh(grids):
@@ -150,20 +160,25 @@ def surfaces_of(mesh, **given):
     )
 
 
+@pytest.mark.parametrize("lifted", [0.0, 3e-3])
 @pytest.mark.parametrize("flat_is_slave", [False, True])
-def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids, flat_is_slave):
+def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids, flat_is_slave, lifted):
+    """Pushed, and pulled where closed nodes are lifted."""
     grid = grids[0]
     surfaces = surfaces_of(grid.mesh, flat_is_slave=flat_is_slave)
     rng = np.random.default_rng(3)
     x = grid.mesh.points.copy()
     n = grid.mesh.n_sphere_points
-    x[:n, 1] -= 2e-3
+    x[:n, 1] += lifted - 2e-3
     x += rng.normal(0.0, 1e-7, x.shape)
+    closed = np.arange(len(surfaces.slave)) < 20
     x[grid.mesh.points[:, 0] == 0.0, 0] = 0.0
     triplets = Triplets.for_surfaces(surfaces)
     force = np.zeros(grid.n_dofs)
-    _, m = contact_forces(surfaces, x, force=force, tangent=triplets)
+    contact, m = contact_forces(surfaces, x, force=force, tangent=triplets, closed=closed)
     assert m > 1000
+    assert (contact.pressure.min() < 0.0) == (lifted > 0.0)
+    assert contact.force == pytest.approx(-force[1 : 2 * n : 2].sum(), rel=1e-12)
     direction = rng.normal(0.0, 1.0, x.shape)
     direction[grid.mesh.points[:, 0] == 0.0, 0] = 0.0
     change = np.zeros(grid.n_dofs)
@@ -172,7 +187,7 @@ def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids, flat_is_
     sides = []
     for sign in (1.0, -1.0):
         f = np.zeros(grid.n_dofs)
-        contact_forces(surfaces, x + sign * step * direction, force=f)
+        contact_forces(surfaces, x + sign * step * direction, force=f, closed=closed)
         sides.append(f)
     numeric = (sides[0] - sides[1]) / (2.0 * step)
     assert change == pytest.approx(numeric, abs=2e-4 * np.abs(numeric).max())
