@@ -109,7 +109,7 @@ class DiagnosisRules:
         "of 172 sets of three makes as many truths lead as with eleven",
     )  # fmt: skip
     partners: int = rule(
-        3, "leading mechanisms beside whose fits every other explanation is screened [-]",
+        3, "leading pairs whose second effect is simulated beside the fit of the first [-]",
         "a verdict lists three",
     )  # fmt: skip
     pair_step: float = rule(
@@ -440,7 +440,7 @@ class DiagnosisRules:
     priors: tuple[tuple[str, float], ...] = rule(
         (
             ("baseline", 0.6), ("inputs", 0.19), ("mechanisms", 0.19), ("outside-library", 0.02),
-            ("second", 0.06),
+            ("second", 0.1),
         ),
         "probabilities before the comparison, shared alike within each kind; of a second one [-]",
         "near the largest mean ln p over 172 sets; those hold no wrong number: as probable",

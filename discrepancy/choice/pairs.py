@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -13,7 +12,7 @@ from scipy.special import logsumexp
 
 from ...core.arrays import Array
 from ..baseline.laws import Progress
-from ..comparison.forward import Simulator
+from ..comparison.forward import Point, Simulator
 from ..inference.fit import Fit, fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual
@@ -23,19 +22,17 @@ from ..unknowns.wrong_number import is_wrong
 from .odds import Priors, gains, members, tempered
 
 # limit: places of each mechanism in the search for pairs [-]; a pair takes their square
-_PLACES = 48
-
-# limit: places of one beside a fit of the other [-]; time
-_BESIDE = 400
+_PLACES = 250
 
 
 class _Candidate(NamedTuple):
-    """Two by the sum of their effects: ln B over the baseline, and where in their priors."""
+    """Two by the sum of their effects: ln B over the baseline, where in their priors, the fit."""
 
     one: Screened
     two: Screened
     gain: float
     place: Array
+    lead: Fit
 
     @property
     def names(self) -> tuple[str, str]:
@@ -48,8 +45,7 @@ def with_pairs(
 ) -> Ranking:
     """Screen all pairs, one of them a mechanism, and fit those that lead by it.
 
-    What leads of them is fitted, to the problem that the singles were fitted to; the rest count by
-    their screening.
+    What leads is fitted, to the problem of the singles; the rest count by their screening.
     """
     simulator = simulator.of(ranking.problem)
     prior = Priors.of(ranking)
@@ -59,6 +55,9 @@ def with_pairs(
 
     least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
     order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
+    unsure = [c for c in order[: RULES.partners] if weight(c.names, c.gain) > least - RULES.near]
+    order[: len(unsure)] = [_there(simulator, ranking, c) for c in unsure]
+    order.sort(key=lambda c: -weight(c.names, c.gain))
     pairs: list[Fit] = []
     best = -math.inf
     for c in order:
@@ -67,15 +66,12 @@ def with_pairs(
             break
         progress(f"fitting {c.names[0]} with {c.names[1]}")
         near = [f for f in ranking.singles if f.mechanisms[0].name in c.names]
-        start = max(near, key=lambda f: f.log_evidence, default=ranking.base)
+        start = max(near, key=lambda f: f.log_evidence)
         both = pair_effect(simulator, c.one, c.two)
         pair = c.one.mechanism, c.two.mechanism
         pairs.append(fit_anchored(simulator, pair, both, start=start, place=c.place))
-        own = pairs[-1].log_evidence - ranking.base.log_evidence
-        best = max(best, weight(c.names, own))
-    lead = max((f.log_evidence for f in ranking.singles), default=0.0)
-    if max((f.log_evidence for f in pairs), default=-math.inf) > lead + RULES.second:
-        pairs = sharpened_leading(simulator, pairs, ranking.base, most=1, rounds=2)
+        best = max(best, weight(c.names, pairs[-1].log_evidence - ranking.base.log_evidence))
+    pairs = sharpened_leading(simulator, pairs, ranking.base, most=2, rounds=1)
     fitted = {f.name for f in pairs}
     unfitted = {"+".join(c.names): c.gain for c in order}
     return replace(
@@ -85,30 +81,12 @@ def with_pairs(
 
 
 def _candidates(ranking: Ranking) -> Iterable[_Candidate]:
-    """Every pair, at the place where the sum of its effects does best."""
+    """Every pair with one that is fitted, at the place where the sum of their effects does best."""
     found: dict[tuple[str, str], _Candidate] = {}
-    leads = [f for f in ranking.singles if not is_wrong(f.mechanisms[0])][: RULES.partners]
-    leads += [f for f in ranking.singles if is_wrong(f.mechanisms[0])][:1]
-    for c in (*_sums(ranking), *(c for lead in leads for c in _beside(ranking, lead))):
+    for c in (c for lead in ranking.singles for c in _beside(ranking, lead)):
         if c.names not in found or found[c.names].gain < c.gain:
             found[c.names] = c
     return found.values()
-
-
-def _sums(ranking: Ranking) -> Iterable[_Candidate]:
-    """Two mechanisms beside the stated numbers."""
-    among = [s for s in ranking.screened if not is_wrong(s.mechanism)]
-    linear, w = ranking.stated.linear, ranking.stated.linear.white(ranking.stated.residual)
-    thin = [np.arange(0, len(s.effect), max(len(s.effect) // _PLACES, 1)) for s in among]
-    whites = [linear.white(s.effect[t]) for s, t in zip(among, thin, strict=True)]
-    own = [e @ w - 0.5 * np.sum(e**2, axis=1) for e in whites]
-    off = ranking.stated.log_evidence - ranking.base.log_evidence
-    for i, j in itertools.combinations(range(len(whites)), 2):
-        ratio = own[i][:, None] + own[j][None, :] - whites[i] @ whites[j].T
-        p, q = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
-        one, two = among[i], among[j]
-        place = np.concatenate([one.grid.places()[thin[i][p]], two.grid.places()[thin[j][q]]])
-        yield _Candidate(one, two, _mean(ratio) + off, place)
 
 
 def _mean(log_ratio: Array) -> float:
@@ -117,25 +95,47 @@ def _mean(log_ratio: Array) -> float:
 
 
 def _beside(ranking: Ranking, lead: Fit) -> Iterable[_Candidate]:
-    """A fitted explanation with each other one, of what it leaves."""
-    order = [s.mechanism.name for s in ranking.screened]
-    at = order.index(lead.name)
-    own = ranking.screened[at]
-    white = lead.linear.white(lead.residual)
-    gain = lead.log_evidence - ranking.base.log_evidence
-    for k, s in enumerate(ranking.screened):
-        if s is own or (is_wrong(s.mechanism) and is_wrong(own.mechanism)):
-            continue
-        thin = np.arange(0, len(s.effect), max(len(s.effect) // _BESIDE, 1))
-        e = lead.linear.white(s.effect[thin])
-        ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1)
-        place = s.grid.places()[thin[ratio.argmax()]]
-        first, second = ((own, lead.place), (s, place))
-        if k < at:
-            first, second = second, first
-        yield _Candidate(
-            first[0], second[0], gain + _mean(ratio), np.concatenate([first[1], second[1]])
-        )
+    """A fitted explanation with each other one, by what that does beside the stated numbers."""
+    own = lead.mechanisms[0]
+    for s in ranking.screened:
+        if s.mechanism is not own and not (is_wrong(s.mechanism) and is_wrong(own)):
+            yield _together(ranking, lead, s, s.effect + _otherwise(ranking, lead, s))
+
+
+def _otherwise(ranking: Ranking, lead: Fit, screened: Screened) -> Array:
+    """What a number of the sheet does more beside a fit than beside the stated ones, (k, m)."""
+    m, known = screened.mechanism, ranking.problem.nuisances
+    at = [i for i, n in enumerate(known) if is_wrong(m) and n.name == m.key]
+    off = [math.log(m.parameters[0].value(x)) for i in at for x in screened.grid.places()[:, 0]]
+    more = (lead.linear.J - ranking.stated.linear.J)[:, at]
+    return np.outer(off, more / known[at[0]].spread) if at else np.zeros(more.shape[:1])
+
+
+def _there(simulator: Simulator, ranking: Ranking, c: _Candidate) -> _Candidate:
+    """The same pair, by what the other does beside the fit of the one: simulated there."""
+    other = c.two if c.one.mechanism is c.lead.mechanisms[0] else c.one
+    own, z = c.lead.grid.values(c.lead.place), c.lead.z
+    points = [Point(z, {**own, **values}) for values in other.grid.nodes()]
+    both = simulator.predict((c.one.mechanism, c.two.mechanism), points)
+    alone = simulator.predict(c.lead.mechanisms, [Point(z, own)])[0]
+    there = _together(ranking, c.lead, other, other.grid.refine(both - alone))
+    return max(c, there, key=lambda one: one.gain)
+
+
+def _together(ranking: Ranking, lead: Fit, s: Screened, effect: Array) -> _Candidate:
+    """A fitted explanation, its own numbers free, with another of such an effect, (k, m)."""
+    order = [x.mechanism.name for x in ranking.screened]
+    mine, its = order.index(lead.name), order.index(s.mechanism.name)
+    few, some = (slice(None, None, max(len(x) // _PLACES, 1)) for x in (lead.residuals, effect))
+    white, e = lead.linear.white(lead.residuals[few]), lead.linear.white(effect[some])
+    alone = -0.5 * np.sum(white**2, axis=1)
+    ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1) + alone[:, None]
+    gain = lead.log_evidence - ranking.base.log_evidence + _mean(ratio) - _mean(alone)
+    p, q = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
+    both = [(mine, lead.grid.places()[few][p]), (its, s.grid.places()[some][q])]
+    (i, first), (j, second) = both if mine < its else both[::-1]
+    place = np.concatenate([first, second])
+    return _Candidate(ranking.screened[i], ranking.screened[j], gain, place, lead)
 
 
 def pair_effect(

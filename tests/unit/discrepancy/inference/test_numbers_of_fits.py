@@ -229,12 +229,11 @@ def screened_fully(toy, effect):
     )
 
 
-def paired(toy, data, effects, *, singles=(), hidden=None):
+def paired(toy, data, effects):
     """Names of the pairs that are fitted to data, and what the others gain by screening."""
     simulator, asked = toy.Simulator(toy.problem(data)), []
     screened = [screened_fully(toy, e) for e in effects]
-    if hidden is not None:
-        screened = [replace(s, effect=np.where(hidden[:, None], 0.0, s.effect)) for s in screened]
+    singles = [toy.fit_of(data, e) for e in effects]
     ranking = toy.ranking_of(
         simulator.problem, toy.fit_of(data), singles=singles, screened=screened
     )
@@ -248,32 +247,29 @@ def test_the_six_best_pairs_are_fitted_and_the_others_screened(toy) -> None:
     assert (len(fitted), len(screened)) == (6, 4)
 
 
-def test_pairs_are_screened_beside_the_three_leading_mechanisms(toy) -> None:
-    """Each leaves 20 of the last cell, of which the last effect explains half: 200 nats."""
-    effects, shapes = library_of(toy, *[40.0] * 6)
-    singles = [
-        replace(toy.fit_of([0.0] * 8, e, lift=-k), residual=0.5 * np.array(shapes[5]))
-        for k, e in enumerate(effects[:4])
-    ]
-    base = toy.fit_of([0.0] * 8)
+def screened_pairs(toy, data, effects, singles):
+    """What each pair gains by screening beside fits of one of it."""
     given = toy.ranking_of(
-        None, base, singles=singles, screened=[screened_fully(toy, e) for e in effects]
-    )
-    gained = {c.names: c.gain for c in _candidates(given)}
-    # over an even prior: the width of a posterior of 1/40
-    more = 0.5 * 20.0**2 + math.log(math.sqrt(2.0 * math.pi) / 40.0)
-    seen = [gained[f"m{k}", "m5"] - singles[k].log_evidence + base.log_evidence for k in range(4)]
-    assert seen[:3] == pytest.approx([more] * 3, abs=0.02)
-    assert seen[3] < 0.0
+        toy.problem(data), toy.fit_of(data), singles=singles,
+        screened=[screened_fully(toy, e) for e in effects],
+    )  # fmt: skip
+    return {c.names: c.gain for c in _candidates(given)}
 
 
-def test_pairs_are_sought_by_48_places_of_each(toy) -> None:
-    """Every fifth of 241: where only the others hold an effect none is seen."""
-    effects, shapes = library_of(toy, *[40.0] * 3)
-    data = 0.5 * np.sum(shapes[:2], axis=0)
-    whole = paired(toy, data, effects)[0]
-    assert whole[0] == "m0 with m1"
-    assert paired(toy, data, effects, hidden=np.arange(241) % 5 == 0)[0] == []
+def test_pairs_are_screened_beside_every_fit(toy) -> None:
+    effects, _ = library_of(toy, *[40.0] * 4)
+    singles = [toy.fit_of([0.0] * 8, e) for e in effects[:2]]
+    seen = screened_pairs(toy, [0.0] * 8, effects, singles)
+    assert set(seen) == {("m0", "m1"), ("m0", "m2"), ("m0", "m3"), ("m1", "m2"), ("m1", "m3")}
+
+
+def test_a_pair_is_screened_with_the_numbers_of_its_fit_free(toy) -> None:
+    """The first alone takes half of what the second does: at that place hardly any is left."""
+    one, two = toy.Effect("one", (8.0, 8.0)), toy.Effect("two", (0.0, 6.0))
+    data = [3.0, 7.5]
+    both = toy.fit_of(data, one, two)
+    gained = screened_pairs(toy, data, (one, two), [toy.fit_of(data, one)])["one", "two"]
+    assert gained == pytest.approx(both.log_evidence - toy.fit_of(data).log_evidence, abs=0.02)
 
 
 def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy) -> None:
