@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
@@ -85,7 +87,7 @@ def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
     ]
     step, axes = _number(root, "delta_t") / 1e3, _axes(root)
     timed = step > 0.0
-    turn = np.exp(1j * np.radians(axes["angle"]))
+    turn = cmath.rect(1.0, math.radians(axes["angle"]))
     rows = []
     for frame, x, y in sorted(frames):
         # rows of a picture grow downwards
@@ -117,9 +119,10 @@ def _text(parent: Any, name: str) -> str:
 
 def _number(parent: Any, name: str, otherwise: float = np.nan) -> float:
     try:
-        return float(_text(parent, name))
+        value = float(_text(parent, name))
     except ValueError:
         return otherwise
+    return value if math.isfinite(value) else otherwise
 
 
 def _axes(root: Any) -> dict[str, float]:

@@ -48,6 +48,11 @@ def test_a_tracker_project_in_its_own_axes(tmp_path):
     # axes turned by 90 degrees: their x points up in the picture
     (tmp_path / "b.trk").write_text(_trk({0: (150.0, 100.0)}, angle=90.0))
     assert read_columns(tmp_path / "b.trk").values[0] == pytest.approx([0.0, 0.2, -0.1])
+    # what is damaged is left out, and axes without a number are those of the picture
+    (tmp_path / "d.trk").write_text(
+        _trk({0: ("nan", "1e999"), 1: ("lost", 2.0), 2: (150.0, 100.0)}, angle="inf")
+    )
+    assert read_columns(tmp_path / "d.trk").values == pytest.approx(np.array([[0.01, 0.1, 0.2]]))
     for text, words in (("<object>", "cannot be read"), ("<object/>", "0 tracks"),
                         ("<!ENTITY a><object/>", "not a plain project")):  # fmt: skip
         (tmp_path / "c.trk").write_text(text)
