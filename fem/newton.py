@@ -165,7 +165,7 @@ class Solver:
         unbalanced = self._unbalanced(now)
         if unbalanced < RULES.residual * force:
             return True
-        return next_move < RULES.still_correction * delta and unbalanced < max(
+        return next_move < RULES.still_correction * abs(delta) and unbalanced < max(
             _SMALL * force, self.grid.round_off
         )
 

@@ -66,10 +66,7 @@ class Dent:
 
     def lines(self) -> Iterator[str]:
         """Yield what there is to say, for people."""
-        least = _KEPT_ROUND_OFF * (abs(self.left_sphere) + abs(self.left_flat))
-        sphere, flat = (
-            1e6 * x if abs(x) > least else 0.0 for x in (self.left_sphere, self.left_flat)
-        )
+        sphere, flat = 1e6 * self.left_sphere, 1e6 * self.left_flat
         yield (
             f"unloaded from Delta/R = {self.depth:.4g}: left in the sphere {sphere:.4g} um, in the "
             f"flat {flat:.4g} um; {self.energy_returned:.1%} of the energy returned"
@@ -161,16 +158,17 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     R, load = solution.problem.pair.R, float(u.curve.force[0])
     contact = 2.0 * float(u.curve.radius[0])
     top = int(u.crater_z.argmax())
+    kept = (u.residual_sphere, u.residual_flat)
+    sphere, flat = (x if abs(x) > _KEPT_ROUND_OFF * u.depth * R else 0.0 for x in kept)
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
-    least = max(1e-3 * u.residual_flat, _KEPT_ROUND_OFF * R)
-    rises = u.residual_flat > 0.0 and u.crater_z[top] > least
+    rises = flat > 0.0 and u.crater_z[top] > max(1e-3 * flat, _KEPT_ROUND_OFF * R)
     rim, height = _crest(u.crater_r, u.crater_z, top) if rises else (math.nan, 0.0)
-    of_the_flat = u.residual > 0.0 and u.residual_sphere <= RULES.ball_keeps * u.residual
+    of_the_flat = flat > 0.0 and sphere <= RULES.ball_keeps * (sphere + flat)
     by_contact, by_rim = (
         brinell(load, 2.0 * R, d) if of_the_flat else math.nan for d in (contact, rim)
     )
     return Dent(
-        depth=u.depth, load=load, left_sphere=u.residual_sphere, left_flat=u.residual_flat,
+        depth=u.depth, load=load, left_sphere=sphere, left_flat=flat,
         contact_diameter=contact, rim_diameter=rim, rim_height=height,
         brinell_by_contact=by_contact, brinell_by_rim=by_rim,
         energy_returned=_returned(solution, u),
@@ -206,10 +204,8 @@ def _length(x: float) -> str:
 
 def _returned(solution: Solution, u: Unloading) -> float:
     """Work of an unloading over that of the loading before it."""
-    c = solution.loading
-    before = c.delta < u.curve.delta[0]
-    d, F = (
-        np.append(x[before], y[0]) for x, y in ((c.delta, u.curve.delta), (c.force, u.curve.force))
-    )
-    back = np.append(u.curve.delta, u.residual), np.append(u.curve.force, 0.0)
-    return float(np.trapezoid(back[1][::-1], back[0][::-1]) / loading_work(d, F)[-1])
+    c, back = solution.loading, u.curve
+    before = c.delta < back.delta[0]
+    d, F = (np.append(x[before], y[0]) for x, y in ((c.delta, back.delta), (c.force, back.force)))
+    given = loading_work((back.delta - u.residual)[::-1], back.force[::-1])
+    return float(given[-1] / loading_work(d, F)[-1])

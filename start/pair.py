@@ -56,6 +56,8 @@ class Solved:
             bodies = np.split(last.plastic_strain, [last.n_sphere_quads])
             strains = (float(strain.max(initial=0.0)) for strain in bodies)
             told += past_curves(self.solution.problem.pair, strains)
+        back = (one.outcome for one in self.solution.unloadings)
+        told += [str(ending) for ending in back if not ending.completed]
         return "\n".join(told if self.level == "smoke" else told[1:])
 
     def rows(self) -> list[dict[str, float]]:

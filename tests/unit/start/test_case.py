@@ -302,3 +302,13 @@ def test_a_pair_is_solved_without_a_file(tmp_path):
                        ({"unload_from": [0.4]}, "unload_from")):  # fmt: skip
         with pytest.raises(InputError, match=key):
             ds.case(pair, **wrong)
+
+
+@pytest.mark.fe
+def test_what_does_not_yield_gives_all_back_and_keeps_nothing():
+    steel = ds.Material(E=200e9, nu=0.3)
+    solved = ds.case(ds.Pair(steel, steel, 0.01), max_delta_over_R=3e-4, level="smoke")
+    (dent,) = solved.measured.dents
+    assert (dent.left_sphere, dent.left_flat, dent.rim_height) == (0.0, 0.0, 0.0)
+    assert dent.energy_returned == pytest.approx(1.0, abs=1e-3)
+    assert np.isnan(dent.brinell_by_contact)
