@@ -373,7 +373,7 @@ class StrikerTable(BodyTable):
         if isinstance(given.get("material"), Mistyped):
             return {**given, "mass_kg": 1.0}  # the name has a line of its own
         if given.get("density_kg_m3") is None:
-            return given
+            return {**given, "mass_kg": None}
         try:
             density = TypeAdapter(Density).validate_python(given["density_kg_m3"])
             radius = TypeAdapter(Radius).validate_python(
@@ -385,6 +385,13 @@ class StrikerTable(BodyTable):
         mass = solid_mass(radius.value, density.value)
         std = mass * math.hypot(density.relative, 3.0 * radius.relative)
         return {**given, "mass_kg": {"value": mass, "std": std}}
+
+    @field_validator("mass_kg", mode="before")
+    @classmethod
+    def _solid(cls, given: Any) -> Any:
+        if given is None:
+            raise ValueError("a mass, or density_kg_m3 of a solid sphere")
+        return given
 
     @field_validator("shape", mode="before")
     @classmethod

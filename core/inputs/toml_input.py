@@ -136,10 +136,13 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
     if location[-1:] == ("[key]",):
         key = key.removesuffix(".[key]")
         return InputError("unknown key", source=source, key=key, allowed=message)
-    if isinstance(item["input"], dict) and item["type"] == "value_error":
-        return InputError(message, source=source, key=key)  # of the table, not of one key
+    given = item["input"]
+    if isinstance(given, dict) and item["type"] == "value_error":
+        if "value" not in given:
+            return InputError(message, source=source, key=key)  # of the table, not of one key
+        given = given["value"]
     # TOML has no null: a validator that complains of None misses the key
-    found = "missing" if item["input"] is None else _shown(item["input"])
+    found = "missing" if given is None else _shown(given)
     return InputError(found, source=source, key=key, allowed=message)
 
 

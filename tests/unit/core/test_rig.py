@@ -33,6 +33,7 @@ MISTAKES = {
     ("strikers", "rod", "E_Pa"): (-1.0, "strikers.rod.E_Pa: -1"),
     ("strikers", "rod", "tip_flat_radius_m"): (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
     ("target", "nu"): (0.5, "target.nu: 0.5"),
+    ("target", "density_kg_m3"): ({"value": 7.8}, "target.density_kg_m3: 7.8 .*allowed: a number"),
     ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
     ("target", "Sy_Pa"): ({"value": 3e8, "known": "well"}, 'target.Sy_Pa: .*known = "guess"'),
     ("strikers", "rod", "mass"): (1.0, "strikers.rod.mass: unknown key"),
