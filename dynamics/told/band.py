@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import reduce
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -122,8 +123,12 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
 
 
 def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
-    """Return the uncertain quantities that change nothing, and how uncertain they are."""
-    stated = ((".".join(path), quantity.relative) for path, quantity in _uncertain(setup))
+    """Return the quantities stated as uncertain that change nothing, and how uncertain they are."""
+    stated = (
+        (".".join(path), quantity.relative)
+        for path, quantity in _uncertain(setup)
+        if path[-1] in reduce(lambda table, part: table.get(part, {}), path[:-1], setup.content)
+    )
     return [(key, share) for key, share in stated if not any(band.parts.get(key, {}).values())]
 
 

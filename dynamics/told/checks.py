@@ -44,6 +44,8 @@ _ABOVE_ONE = 1.0 + 5e-4
 
 # limit: rho v^2 over strength from which inertia of the metal is told of [-]
 _DAMAGE = 1.0
+# limit: part of the approach's speed below which a sphere is at rest [-]: round-off
+_ROUND_OFF = 1e-9
 # limit: relative effect that is worth a line [-]
 _WORTH_A_LINE = 1e-3
 
@@ -86,7 +88,7 @@ def checks(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _repeats(setup), _deep(scene, found), _onset(setup, scene, found),
+            _repeats(setup), _deep(setup, scene, found), _onset(setup, scene, found),
             flow_checks(setup, scene, found, lacks), _either(scene, found),
             flat_checks(setup, scene, found, lacks), _walls(scene, found),
             _gravity(setup, scene, found),
@@ -159,8 +161,9 @@ def _either(scene: Scene, found: Impact) -> Iterator[str]:
         )
 
 
-def _deep(scene: Scene, found: Impact) -> Iterator[str]:
-    if found.peak_depth_m > scene.striker.radius:
+def _deep(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    radii = [scene.striker.radius, *([setup.second.radius] if setup.second else [])]
+    if found.peak_depth_m > min(r for r in radii if r > 0.0):
         yield (
             f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the radius: the bodies "
             "would go through each other, and no number here holds"
@@ -287,7 +290,9 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if turns := second.turned(found.tangential_impulse_Ns):
         yield f"the struck sphere leaves with a spin of {turns:.4g} rad/s"
     if second.free:
-        own, other = second.parted(ball.mass_kg.value, scene.approach.speed, found.restitution)
+        speed = scene.approach.speed
+        parted = second.parted(ball.mass_kg.value, speed, found.restitution)
+        own, other = (v if abs(v) > _ROUND_OFF * speed else 0.0 for v in parted)
         yield (
             f"along the approach the striker goes on with {own:.4g} m/s, the struck sphere leaves "
             f"with {other:.4g} m/s"
@@ -303,6 +308,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         yield (
             f"the contact's radius, {a * 1e3:.3g} mm, is {a / ball.tip_radius_m.value:.2g} of the "
             "ball's; a seat is taken as Hertz has it, for contacts that are small beside both"
+            f"{': no number here holds' if a > ball.tip_radius_m.value else ''}"
         )
 
 

@@ -260,6 +260,16 @@ def test_the_metals_inertia_is_told_of(speed, said):
     assert any("more than the radius" in line for line in blow.checks()) is said
 
 
+def test_the_smaller_of_two_spheres_is_the_one_that_is_gone_through():
+    """A grain of 1 um that a ball of 5 mm flattens by 1.7 um; of equal balls the striker stops."""
+    grain = {**STEEL, "Sy_Pa": 3e8, "shape": "sphere", "radius_m": 1e-6, "mass_kg": 1e-9}
+    _, blow = struck(target=grain, law="fitted", speed=3.0)
+    assert any("more than the radius" in line for line in blow.checks())
+    like = {**STEEL, "shape": "sphere", "radius_m": 5e-3, "mass_kg": 4.0841e-3}
+    _, blow = struck(target=like, ball={**STEEL, "mass_kg": 4.0841e-3}, speed=3.0)
+    assert any("goes on with 0 m/s" in line for line in blow.checks())
+
+
 def test_a_ball_that_is_put_down_is_no_blow():
     """Its weight, 40 mN, presses 5 mm of steel in by 24 nm: 1e-9 m/s is lost in their round-off."""
     soft = {**STEEL, "Sy_Pa": 3e8}

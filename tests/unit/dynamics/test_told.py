@@ -526,6 +526,13 @@ def test_a_strength_less_sure_than_itself_is_told():
     assert "the standard deviation of target.Sy_Pa is 7 times its value" in lines
 
 
+def test_a_deviation_that_changes_nothing_is_told_where_it_is_stated():
+    _, lines = told({"target": {"density_kg_m3": {"value": 8500.0, "std": 85.0}}})
+    assert "of target.density_kg_m3, 0.01 of it, changes nothing here" in lines
+    _, lines = told({"target": {"density_kg_m3": None, "material": "brass-cartridge-annealed"}})
+    assert "changes nothing here" not in lines
+
+
 def test_a_shell_is_said_to_be_no_solid():
     _, lines = told({"strikers": {"ball": {"mass_kg": 0.001}}})
     assert "has 0.06241 kg; the contact law takes a shell for solid" in lines
