@@ -22,6 +22,7 @@ from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow, past_curves, strains_under
 from .case_file import metal_keys, read_pair
 from .judged import CURVE_POINTS, ELASTIC, USABLE, Departure, Reference, judged
+from .measured import KEPT_ROUND_OFF
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -103,13 +104,16 @@ class LawComparison:
         """Return head and cells of the laws at the largest depth."""
         pressure = "p/Sy_min" if np.isfinite(self.pair.Sy_min) else "p/E'"
         head = ("law", "F [N]", "a [mm]", pressure, "left [um]", "largest departure")
+        last = self.last_rows()
+        kept = [row.residual_sphere_m + row.residual_flat_m for row in last]
         cells: list[tuple[str, ...]] = [
             (
                 row.law, f"{row.force_N:.4g}", f"{row.contact_radius_m * 1e3:.4g}",
                 f"{row.mean_pressure_over_Symin:.3f}",
-                f"{(row.residual_sphere_m + row.residual_flat_m) * 1e6:.4g}", self.told(row.law),
+                f"{left * 1e6 if left > KEPT_ROUND_OFF * row.delta_m else 0.0:.4g}",
+                self.told(row.law),
             )
-            for row in self.last_rows()
+            for row, left in zip(last, kept, strict=True)
         ]  # fmt: skip
         return head, cells
 

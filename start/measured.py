@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..fem.solution import Solution, Unloading
 
 # limit: part of the approach below which nothing is permanent [-]: round-off
-_KEPT_ROUND_OFF = 1e-9
+KEPT_ROUND_OFF = 1e-9
 
 _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 
@@ -159,9 +159,9 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     contact = 2.0 * float(u.curve.radius[0])
     top = int(u.crater_z.argmax())
     kept = (u.residual_sphere, u.residual_flat)
-    sphere, flat = (x if abs(x) > _KEPT_ROUND_OFF * u.depth * R else 0.0 for x in kept)
+    sphere, flat = (x if abs(x) > KEPT_ROUND_OFF * u.depth * R else 0.0 for x in kept)
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
-    rises = flat > 0.0 and u.crater_z[top] > max(1e-3 * flat, _KEPT_ROUND_OFF * R)
+    rises = flat > 0.0 and u.crater_z[top] > max(1e-3 * flat, KEPT_ROUND_OFF * R)
     rim, height = _crest(u.crater_r, u.crater_z, top) if rises else (math.nan, 0.0)
     of_the_flat = flat > 0.0 and sphere <= RULES.ball_keeps * (sphere + flat)
     by_contact, by_rim = (

@@ -20,7 +20,8 @@ def effect(other: Impact, found: Impact) -> str:
         ratios = {"dent": getattr(other, key) / getattr(found, key), **ratios}
     told = {name: _percent(ratio) for name, ratio in ratios.items()}
     if not back > 0.0:
-        told["restitution"] = f"{other.restitution:.3g} in place of 0"
+        other_back = other.restitution
+        told["restitution"] = f"{other_back:.3g} in place of 0" if other_back else "0 either way"
     if set(told.values()) == {_percent(1.0)} and found.rebound_spin_rad_s != 0.0:
         told["spin"] = _percent(other.rebound_spin_rad_s / found.rebound_spin_rad_s)
     return ", ".join(f"{name} {change}" for name, change in told.items())

@@ -132,6 +132,7 @@ def test_below_first_yield_every_law_is_hertz():
     )
     assert elastic.table()[0][3] == "p/E'"
     assert elastic.best == ("hertz",)
+    assert {row[4] for row in elastic.table()[1]} == {"0"}
 
 
 def test_a_departure_is_told_in_per_cent_then_in_times_then_not_at_all():
