@@ -440,7 +440,7 @@ class DiagnosisRules:
     priors: tuple[tuple[str, float], ...] = rule(
         (
             ("baseline", 0.6), ("inputs", 0.19), ("mechanisms", 0.19), ("outside-library", 0.02),
-            ("second", 0.1),
+            ("second", 0.08),
         ),
         "probabilities before the comparison, shared alike within each kind; of a second one [-]",
         "near the largest mean ln p over 172 sets; those hold no wrong number: as probable",
