@@ -25,9 +25,11 @@ laws = ["fitted"]
 """
 
 
-def setup(text):
-    return setup_of(tomllib.loads(text), source="ball.toml")
+def setup(given):
+    """The set-up of a file's text, or of its tables."""
+    content = tomllib.loads(given) if isinstance(given, str) else given
+    return setup_of(content, source="ball.toml")
 
 
-def blow(text, *laws):
-    return blow_of(setup(text), [LAWS[name] for name in laws or ("fitted",)])
+def blow(given, *laws):
+    return blow_of(setup(given), [LAWS[name] for name in laws or ("fitted",)])
