@@ -107,7 +107,6 @@ def test_compiled_and_library_integrator_agree() -> None:
 
 
 def test_integrators_agree_on_contacts_that_give_way_sideways() -> None:
-    """Spring, slip, reversal and both ends of it, located as events by either."""
     rng = np.random.default_rng(5)
     for number in range(15):
         scene = random_scene(rng, number)

@@ -1,9 +1,4 @@
-"""Every key of every file acts or is refused: nothing that is accepted goes without a trace.
-
-For an impact, a change of the key changes what is printed or written; for a case, what the solver
-gets or what is said beside it. A key that no context of the lists below lets act must be refused in
-one line.
-"""
+"""Every key of an impact acts on what is printed or written, or is refused in one line."""
 
 import tomllib
 from dataclasses import asdict
@@ -147,7 +142,6 @@ MEETS = {
 
 
 def _with_mechanism(mechanism, text):
-    """The file with a number from within each parameter's range."""
     numbers = [f"{p.name} = {float(p.value(0.6))!r}" for p in mechanism.parameters]
     return "\n".join([text, f"[mechanisms.{mechanism.name}]", *numbers, ""])
 
@@ -211,7 +205,6 @@ def with_key(text, table, name, value):
 
 
 def told(content, tmp_path):
-    """All that a user can see of an impact."""
     setup = setup_of(content, source=str(tmp_path / "ball.toml"))
     found = blow_of(setup, [law_named(name) for name in setup.laws[:1]])
     swept = setup.swept(found.laws[0]).to_csv(tmp_path / "s.csv") if setup.sweep.count else None

@@ -1,8 +1,4 @@
-"""Every key of CASE.toml and of an inverse file acts.
-
-Of a case: on what the solver is given, on the ball's mass, or on the line that says what the solve
-leaves aside. Of an inverse file: on a number that is printed or written.
-"""
+"""Every key of CASE.toml acts on solver, mass or what is told; of an inverse file on a number."""
 
 import copy
 import tomllib

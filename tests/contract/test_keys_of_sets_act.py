@@ -1,8 +1,4 @@
-"""Every key of set.toml acts: it changes what a command prints, or what a diagnosis compares.
-
-Of a diagnosis: the numbers that are compared and their uncertainties, the notes, which mechanisms
-arithmetic leaves and why, and what each of those changes in the middle of its ranges.
-"""
+"""Every key of set.toml acts: on what is printed, compared, noted, ruled out or simulated."""
 
 import math
 import tomllib
@@ -162,7 +158,6 @@ def write(text, folder):
 
 @cache
 def told(text, folder):
-    """All that comes of a set: what is printed, what is compared, what could be missing."""
     write(text, folder)
     with redirect_stdout(StringIO()) as printed:
         assert run(["recordings", "check", str(folder)]) == 0

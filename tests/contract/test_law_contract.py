@@ -67,7 +67,6 @@ def test_open_contact_has_no_force(law, pair):
 # no smooth law grows faster between two depths than with these powers of them
 @pytest.mark.parametrize(("what", "power"), [("force", 2.5), ("radius", 1.5)])
 def test_it_grows_without_steps_except_where_the_law_says_so(law, pair, what, power):
-    """A fine scan: no fall and no step beyond what the law declares."""
     d = depths(pair, n=20_000)
     value = law.loading(pair, d) if what == "force" else law.contact_radius(pair, d)
     assert np.all(np.isfinite(value))

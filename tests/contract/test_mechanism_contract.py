@@ -1,9 +1,4 @@
-"""What every mechanism keeps to, whichever the library holds; no names are listed here.
-
-At neutral parameters an impact is what it was, bit for bit; near them it is nearly so; attaching
-changes nothing that it was given; observables move as declared; numbers have a unit, a range and a
-source; what arithmetic rules out comes with a reason.
-"""
+"""What every mechanism keeps to, whichever the library holds; no names are listed here."""
 
 import copy
 import math

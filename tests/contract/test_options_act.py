@@ -16,7 +16,6 @@ from dentscope.reduce.output.row import Row
 
 
 def commands(command, name=""):
-    """Yield the name and the command of every command of the line."""
     context = command.context_class(command)
     for last in getattr(command, "list_commands", lambda _: ())(context):
         found = command.get_command(context, last)
@@ -42,7 +41,6 @@ def read_by_reductions():
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_reads_every_option(name):
-    """The least that an option can do is to be read where its command begins."""
     work = inspect.unwrap(COMMANDS[name].callback)
     tree = ast.parse(textwrap.dedent(inspect.getsource(work)))
     read = {

@@ -27,7 +27,6 @@ KERNELS_KEY = "disallow_untyped_defs"
 
 @cache
 def sources() -> tuple[Path, ...]:
-    """Every module of the package, the workshop's too, relative to the root."""
     # a user's folder beside them, what `export` wrote for one, is no package
     packages = sorted(p.parent for p in ROOT.glob("*/__init__.py") if p.parent.name not in APART)
     modules = (p for folder in packages for p in sorted(folder.rglob("*.py")))
@@ -49,7 +48,6 @@ def functions(path: Path) -> list[ast.FunctionDef | ast.AsyncFunctionDef]:
 
 
 def lengths(*, tool_only: bool) -> dict[str, int]:
-    """Lines of each function, by place."""
     return {
         f"{path}:{f.name}": f.end_lineno - f.lineno + 1
         for path in sources()

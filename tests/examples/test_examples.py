@@ -15,7 +15,6 @@ MOST_LINES = 60
 
 
 def executed(name: str) -> dict[str, Any]:
-    """Names after the notebook's code cells, one after the other."""
     (path,) = EXAMPLES.glob(f"ex{name}_*.ipynb")
     names: dict[str, Any] = {"__name__": "__main__"}
     for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:

@@ -35,7 +35,6 @@ def alike(quoted: str, printed: str) -> bool:
 
 
 def compared(block: str, printed: str) -> None:
-    """Find each quoted line among the printed ones, in their order."""
     lines = iter(printed.splitlines())
     for quoted in block.splitlines():
         if quoted.strip() not in ("", "..."):
@@ -52,9 +51,7 @@ def typed(line: str) -> None:
 
 
 @pytest.fixture
-def followed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Callable[[str], dict[str, Any]]:
+def followed(tmp_path, monkeypatch, capsys):
     """Return what runs a page in an empty folder and gives the names of its code."""
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     (tmp_path / "build" / "recordings").mkdir(parents=True)

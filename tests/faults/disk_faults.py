@@ -1,10 +1,8 @@
 """Every call that changes a file fails in turn, and power is lost after each; what is left?
 
-`python tests/faults/disk_faults.py` runs the writers below (a case into a run, a design
-into a published data set, a reduction into a recording set, coefficients into use, reports) once
-for each of their calls and each kind of fault, and prints the counts. A loss of power is played on
-a model of a disk: what was written and not synchronised is lost, torn at a sector, or there though
-its name is not; names come and go with the synchronisation of their folder.
+`python tests/faults/disk_faults.py` prints the counts for all writers below. A loss of power is
+played on a model of a disk: what was written and not synchronised is lost, torn at a sector, or
+there though its name is not; names come and go with the synchronisation of their folder.
 """
 
 import argparse
@@ -134,7 +132,6 @@ def torn(file):
 
 @contextmanager
 def patched(hook):
-    """Let every call of the disk go through a hook."""
     with ExitStack() as all_of_them:
         for name in (*CALLS, "close"):
             called = hook(name, getattr(Disk, name))
@@ -153,13 +150,7 @@ class Writer:
 
 
 def faults(writer, folder, *, codes=(errno.ENOSPC, errno.EIO), every=1):
-    """Let each call (or each few) fail in turn; return how often each did.
-
-    Raises
-    ------
-    AssertionError
-        Something was lost or wrong, or more than one line was said.
-    """
+    """Let each call (or each few) fail in turn; return how often each did."""
     counts = Counter()
     for code in codes:
         at = 1 - every
@@ -294,7 +285,6 @@ def retry_writer():
 
 
 def publish_writer(folder):
-    """A design into a data set that has one already."""
     source, older = folder / "source", folder / "older"
     for case in CASES:
         Store(source).put(case, solved(case))
@@ -417,7 +407,6 @@ def publish_fit_writer(folder):
 
 
 def report_writer():
-    """The files of a sweep: table, data frame and picture, each whole or not there."""
     from dentscope.dynamics.columns import Impacts
     from matplotlib.figure import Figure
 
@@ -465,7 +454,6 @@ def together_writer():
 
 
 def writers(folder):
-    """What makes each of them, by its name."""
     folder.mkdir(parents=True, exist_ok=True)
     return {
         "put": put_writer,

@@ -1,12 +1,8 @@
 """Malformed input to every reader: nothing but one line may come of it, soon and in little memory.
 
-`python tests/faults/fuzz.py --inputs 5000` makes that many files from sound ones by a seed, reads
-them one after the other in a child that stays, and prints for each reader how many were refused
-with a line, how many were read, and what else happened: another exception, a line that is several,
-a file outside the folder, words on the terminal, the end of the process, more than 20 s of it, more
-than 1 GB. Where a number of a TOML file is replaced by what is none (`true`, "0.01", a date, a
-list), reading it is a fault as well. `--raw` takes raw recordings of every kind instead and reduces
-them to numbers and a picture.
+`python tests/faults/fuzz.py --inputs 5000` damages sound files by a seed, reads them in a child
+that stays, and prints what each reader answered; `--raw` takes raw recordings of every kind. A
+number of a TOML file that is replaced by what is none must be refused.
 """
 
 import argparse
@@ -42,7 +38,6 @@ def read_sound_files(readers):
 
 
 def child(seed, first, last, readers):
-    """Read inputs first to last; a line of JSON before and after each."""
     tell = watched.teller()
     read_sound_files(readers)
     for number in range(first, last):
@@ -95,7 +90,6 @@ def screened(printed):
 
 
 def run(count, seed, *, first=0, raw=False, say=lambda line: None):
-    """Read all inputs; return what `watched.run` returns."""
     more = ["--raw"] if raw else []
     return watched.run(count, seed, script=__file__, more=more, first=first, say=say)
 

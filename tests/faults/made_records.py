@@ -18,7 +18,6 @@ def run(path, **given):
 
 
 def refused(call, look="", by=Refused):
-    """Whether a call is refused, for what it looks like."""
     try:
         call()
     except by as error:

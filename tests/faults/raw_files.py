@@ -1,8 +1,6 @@
 """Sound raw files of every kind that `reduce` takes, and damage that recordings meet.
 
-`fuzz.py --raw` damages them by a seed and reduces each as `dentscope reduce KIND FILE` does: to
-numbers, a record and a picture. Options, some drawn beside those that it needs, stand in a line
-before each.
+Options, some drawn beside those that a file needs, stand in a line before it.
 """
 
 import io
@@ -235,7 +233,6 @@ FILES = {
 
 
 def sound(name):
-    """A file without a fault."""
     _end, make, _kind, given = FILES[name]
     return json.dumps(given).encode() + b"\n" + make()
 
@@ -287,7 +284,6 @@ def _damaged(name, content, draw, mutated):
 
 
 def lay_out(name, content, folder):
-    """Put a raw file and its options into a folder, with what belongs beside it."""
     said, _, content = content.partition(b"\n")
     (folder / "options.json").write_bytes(said)
     end = FILES[name][0]

@@ -67,23 +67,7 @@ angle_deg = [20, 45, 90]
 
 @dataclass(frozen=True)
 class Reader:
-    """One file that is damaged.
-
-    Parameters
-    ----------
-    name
-        Its place within a folder.
-    make
-        Gives its sound content.
-    read
-        Reads it as the program does, from its path; whatever it gives is dropped.
-    beside
-        What belongs beside it, by place.
-    change
-        Damages it: content and draw give content and whether it must be refused.
-    put
-        Lays it out otherwise: content and folder give its path.
-    """
+    """A file that is damaged: its place, what makes, reads, lays it out, and stands beside it."""
 
     name: str
     make: Callable[[], bytes]
@@ -249,7 +233,6 @@ def _read_catalogue(path):
 
 @cache
 def _published():
-    """The file of a case and a data set, by their places."""
     cases = disk_faults.CASES
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -276,8 +259,6 @@ def _broken_seal(content, draw):
 
 
 def raw(name):
-    """One of the raw files of `raw_files`."""
-
     def change(content, draw):
         return raw_files.damaged(name, content, draw, mutated)
 

@@ -102,7 +102,6 @@ def test_what_is_tidied_up_is_left_in_peace() -> None:
 
 
 def _group(pid: int) -> list[int]:
-    """Processes of a session, zombies aside."""
     found = []
     for entry in Path("/proc").iterdir():
         if entry.name.isdecimal():

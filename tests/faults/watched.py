@@ -51,7 +51,6 @@ def peak_mb(pid="self"):
 
 
 def cpu_s(pid):
-    """Seconds of the processor that a process has taken."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     except OSError:
@@ -68,7 +67,6 @@ class Watched:
         self.why = ""
 
     def lines(self):
-        """Yield what it says, until its end."""
         rest, reading = b"", False
         begun = cpu, clock = 0.0, time.monotonic()
         out = self.process.stdout
@@ -105,12 +103,9 @@ def run(
     count, seed, *, script, more=(), first=0, slow_s=SLOW_S, memory_mb=MEMORY_MB,
     say=lambda line: None, every=500,
 ):  # fmt: skip
-    """Read inputs by `script --child FIRST --inputs COUNT --seed SEED`, and `more` after it.
+    """Read inputs by `script --child FIRST --inputs COUNT --seed SEED` and `more`, from `first` on.
 
-    From `first` on; `say` is told how far it is after `every` so many, and of each fault.
-
-    Returns counts by reader, what went wrong, the largest memory [MB], and the longest time by
-    reader [s].
+    Returns counts by reader, faults, the largest memory [MB] and the longest times [s].
     """
     counts, longest = defaultdict(Counter), defaultdict(float)
     faults, most = [], 0.0

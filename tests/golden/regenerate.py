@@ -1,7 +1,4 @@
-"""The six reference curves: solve them, print what changed, write them.
-
-`python tests/golden/regenerate.py` rewrites curves.json; with `--check` it only prints.
-"""
+"""Solve the six reference curves anew, print what changed, write them (`--check`: print alone)."""
 
 import json
 import sys
@@ -40,7 +37,6 @@ def solved(name, *, strength=1.0):
 
 
 def differences(new, old):
-    """Largest relative difference of each quantity."""
     return {
         key: float(np.max(np.abs(np.array(new[key]) / np.array(old[key]) - 1.0))) for key in old
     }

@@ -1,9 +1,6 @@
-"""Freeze the subset of a campaign that the golden test refits, and what its fit gave.
+"""Freeze what the golden test refits, and what its fit gave; say why in the commit.
 
-    .venv/bin/python tests/golden/regenerate_fit.py data/campaign/space-{1,2}-1.h5
-
-Every third depth and every unloading of all combinations go in, rounded to six digits. Run it after
-the form or the published coefficients changed, and say why in the commit.
+.venv/bin/python tests/golden/regenerate_fit.py data/campaign/space-{1,2}-1.h5
 """
 
 import json
@@ -49,7 +46,6 @@ def content(paths):
 
 
 def thawed():
-    """The frozen tables, and all that is frozen."""
     frozen = json.loads(PLACE.read_text())
     pairs = tuple(Pair(Material(*s), Material(*f), R) for s, f, R in frozen["pairs"])
     who = {"pairs": pairs, "names": tuple(f"frozen-{k}" for k in range(len(pairs)))}

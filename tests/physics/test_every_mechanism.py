@@ -1,7 +1,4 @@
-"""Every mechanism, on every form of target, by balls and rods: what must hold whatever it does.
-
-`DRAWS=2000 pytest tests/physics/test_every_mechanism.py` draws as many blows as are asked for.
-"""
+"""Every mechanism, on every form of target, by DRAWS blows: what must hold whatever it does."""
 
 import math
 import os

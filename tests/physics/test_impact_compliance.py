@@ -30,7 +30,6 @@ def sphere(psi: float, *, mu: float = MU, stiffness: float = RATIO) -> Scene:
 
 
 def reflected(psi: float) -> float:
-    """Local angle of reflection."""
     return strike(sphere(psi)).tangential_restitution * psi
 
 

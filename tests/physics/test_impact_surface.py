@@ -77,7 +77,6 @@ def test_more_imprints_than_are_kept_apart_never_raise_the_surface() -> None:
 
 
 def rod(angle: float, speed: float, mu: float, **seams: object) -> Scene:
-    """The thesis's rod on iron, by the fitted law."""
     return scene_of(
         LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, friction=Friction(mu),
         approach=Approach(speed, math.radians(angle)), **seams,
@@ -133,9 +132,7 @@ def test_a_second_touch_fades_from_the_old_peak_to_fresh_metal(law: object) -> N
     [(20.0, 1.41, 0.20, 29e-6, 1e-6), (45.0, 2.18, 0.13, 107e-6, 3e-6),
      (70.0, 3.45, 0.10, 179e-6, 8e-6)],
 )  # fmt: skip
-def test_scar_of_the_rigid_rod(
-    angle: float, speed: float, mu: float, slide: float, excess: float
-) -> None:
+def test_scar_of_the_rigid_rod(angle, speed, mu, slide, excess):
     """An independent simulation of the thesis's three impacts, within the scan's 3 um."""
     scene = rod(angle, speed, mu)
     stiffer = replace(scene.pair, sphere=STEEL.with_(E=212e9))

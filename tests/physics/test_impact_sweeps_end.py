@@ -1,7 +1,4 @@
-"""A sweep ends whatever bodies, support and angle it is for, and its answers are those of a blow.
-
-All of them, with processor seconds and memory: python tools/benchmarks/bench_sweeps.py.
-"""
+"""A sweep ends, whatever bodies, support and angle; all: tools/benchmarks/bench_sweeps.py."""
 
 import itertools
 import math
@@ -116,9 +113,7 @@ SWEEPS: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], dict[str
 
 
 @pytest.mark.parametrize(("ball", "flat", "blow", "swept"), SWEEPS.values(), ids=SWEEPS)
-def test_a_sweep_of_anything_ends(
-    ball: dict[str, Any], flat: dict[str, Any], blow: dict[str, Any], swept: dict[str, Any]
-) -> None:
+def test_a_sweep_of_anything_ends(ball, flat, blow, swept):
     content = {
         "gravity_m_s2": 0.0, "target": flat, "strikers": {"ball": ball},
         "friction": {"coefficient": 0.1},

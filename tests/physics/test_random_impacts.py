@@ -28,7 +28,6 @@ DEEPEST = 0.3  # depth over tip radius beyond which no law reaches: then half th
 
 
 def even(rng, low, high):
-    """A number between two, its logarithm evenly."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 

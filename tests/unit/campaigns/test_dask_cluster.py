@@ -1,8 +1,4 @@
-"""The same cases through a real dask cluster, one of whose workers is killed.
-
-The cluster lives in a process of its own: its event loop and the test runner's workers do not share
-one well.
-"""
+"""The same cases through a real dask cluster in a process apart, a worker of which is killed."""
 
 import json
 import os

@@ -86,7 +86,6 @@ def test_parts_hold_every_case_once_below_their_size(tmp_path):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A run and what was published of it, to be read only."""
     place = tmp_path_factory.mktemp("published")
     publish(DESIGN, stored(place / "run"), place / "data")
     return place
@@ -244,8 +243,6 @@ def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, caps
 
 
 class Quick:
-    """Solves every case of a design at once."""
-
     def __init__(self, workers):
         self.workers = workers
 

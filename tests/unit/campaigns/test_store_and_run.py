@@ -35,8 +35,6 @@ from made_cases import solution_of as solution
 
 
 class FakeExecutor:
-    """Gives a made-up solution for each case, and counts."""
-
     workers = 1
 
     def __init__(self, outcome=COMPLETED):

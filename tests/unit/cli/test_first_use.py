@@ -1,14 +1,9 @@
 """A command that compiles for a minute says so, once."""
 
-from pathlib import Path
-
-import pytest
 from dentscope.cli.shared.terminal import tell_first_use
 
 
-def test_it_is_said_until_the_code_is_there(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_it_is_said_until_the_code_is_there(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     tell_first_use()
     assert capsys.readouterr().err.startswith("first use: compiling")

@@ -11,9 +11,7 @@ from dentscope.dynamics.files.setup import read_setup
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_template_runs_through_unchanged(
-    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_template_runs_through_unchanged(kind, tmp_path, capsys):
     name = f"{kind}-5.5mm"  # a point in a name is no ending
     file = tmp_path / f"{name}.toml"
     assert run(["impact", "--new", kind, str(file)]) == 0
@@ -37,9 +35,7 @@ def test_a_template_runs_through_unchanged(
     assert all(float(row["energetic_restitution"]) < 1.0 + 1e-6 for row in rows)
 
 
-def test_a_sweep_none_of_whose_blows_ends_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
     file = tmp_path / "ball.toml"
     text = template("ball").partition("[sweep]")[0]
     text = text.replace("[impact]", "[impact]\nmax_steps = 10", 1)
@@ -81,9 +77,7 @@ def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFix
         ("friction = []", "a list of numbers, or"),
     ],
 )
-def test_a_bad_sweep_is_one_line(
-    sweep: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_bad_sweep_is_one_line(sweep, message, tmp_path, capsys):
     file = tmp_path / "ball.toml"
     assert run(["impact", "--new", "ball", str(file)]) == 0
     text = file.read_text()
@@ -95,9 +89,7 @@ def test_a_bad_sweep_is_one_line(
     assert len(told.strip().splitlines()) == 1
 
 
-def test_what_a_sweep_leaves_as_it_is_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_a_sweep_leaves_as_it_is_is_told(tmp_path, capsys):
     file = tmp_path / "ball.toml"
     assert run(["impact", "--new", "ball", str(file)]) == 0
     text = file.read_text().replace("[impact]", "[impact]\nrepeats = 2")

@@ -19,7 +19,6 @@ COMMAND = typer.main.get_command(assembly.app)
 
 
 def letters(text: str) -> str:
-    """The text without its blanks: a line may end within a word that has a hyphen."""
     return "".join(text.split())
 
 
@@ -119,9 +118,7 @@ def test_progress_without_a_terminal_is_a_line_a_step(capsys: pytest.CaptureFixt
     assert capsys.readouterr().err == "auditing ...\nscreening ...\n"
 
 
-def test_progress_on_a_terminal_stays_in_its_line(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_progress_on_a_terminal_stays_in_its_line(capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("COLUMNS", "20")
     show = progress_of_diagnosis(quiet=False)

@@ -28,8 +28,6 @@ TOY_READER = SimpleNamespace(
 
 
 class Toy(type(MECHANISMS[0])):
-    """A mechanism of another name."""
-
     name = "toy"
     title = "a toy"
 

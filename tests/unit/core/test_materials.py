@@ -16,7 +16,6 @@ def run(*words):
 
 
 def blow(name, tmp_path, capsys):
-    """What `impact` prints of a hard ball on a material."""
     file = tmp_path / "ball.toml"
     file.write_text(
         f'[target]\nmaterial = "{name}"\n[strikers.ball]\nshape = "sphere"\n'

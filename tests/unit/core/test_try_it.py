@@ -20,7 +20,6 @@ node = pytest.mark.skipif(shutil.which("node") is None, reason="node is not inst
 
 
 def asked(folder, code):
-    """What a line of JavaScript answers, the law and the page's script at hand."""
     (folder / f"{NAME}.js").write_text(javascript_source(LAW))
     shutil.copyfile(SITE / "try-it.js", folder / "try-it.js")
     script = (

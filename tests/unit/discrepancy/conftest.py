@@ -29,8 +29,6 @@ NONE = np.zeros((0, 0))
 
 @dataclass(frozen=True)
 class Effect:
-    """A mechanism that adds `size` times a shape to the cells."""
-
     name: str
     shape: tuple[float, ...]
     reason: str = ""
@@ -95,8 +93,6 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Simulator:
-    """Cells that are linear in the unknowns and in the size of every effect."""
-
     problem: Problem
 
     def of(self, problem: Problem) -> Simulator:
@@ -117,7 +113,6 @@ def condition(speed: float = 1.0, striker: str = "ball", angle: float = math.pi 
 
 
 def rig_of(**strikers: dict[str, float]) -> RigNumbers:
-    """Return a rig of strikers by name, of one metal."""
     return RigNumbers(
         {f"strikers.{name}.{k}": x for name, numbers in strikers.items()
          for k, x in numbers.items()},
@@ -129,7 +124,6 @@ def problem(
     value: Sequence[float], *, speeds: Sequence[float] = (), observable: str = "rebound_speed_m_s",
     derivative: Any = None, **more: Any,
 ) -> Problem:  # fmt: skip
-    """Return one cell a condition, of unit standard error, at 1, 2, 3 ... m/s."""
     m = len(value)
     speeds = speeds or [float(k + 1) for k in range(m)]
     cells = Cells(
@@ -189,21 +183,7 @@ def balls_on_plate(
     folder: Path, trials: str, *, noise: Mapping[str, object], E: str = "2.0e11",
     Sy: str = "3.5e8", balls: Mapping[str, tuple[float, float]] | None = None, more: str = "",
 ) -> Path:  # fmt: skip
-    """Write a recording set of hard balls on a plate of steel, and return its folder.
-
-    Parameters
-    ----------
-    folder, trials
-        Where, and what trials.csv holds.
-    noise
-        Entries of its table of noise.
-    E, Sy
-        Of the plate, as set.toml states them.
-    balls
-        Names to tip radius [m] and mass [kg]; none: one of 5 mm, `ball`.
-    more
-        Tables behind these.
-    """
+    """Write a set of hard balls (names to radius [m] and mass [kg]) on a plate of steel."""
     strikers = "".join(
         f'[strikers.{name}]\nshape = "sphere"\ntip_radius_m = {radius}\nmass_kg = {mass}\n'
         "E_Pa = 2.1e11\nnu = 0.3\nSy_Pa = 2e9\n"

@@ -41,9 +41,7 @@ def solved() -> PairTable:
     return PairTable(pair, curve, Turns(*np.array(sorted(rows)).T))
 
 
-def set_of(
-    folder: Path, table: PairTable, *, curves: bool, stated: float = 1.0, fastest: float = 20.0
-) -> Path:
+def set_of(folder, table, *, curves, stated=1.0, fastest=20.0):
     """Write what balls of 5 mm record on this metal, without noise."""
     pair, R = table.pair, 5e-3
     mass = 4.0 / 3.0 * math.pi * R**3 * 7800.0
@@ -165,7 +163,6 @@ def test_a_strength_that_is_assumed_is_not_worth_a_solve(tmp_path, solved, monke
 
 @pytest.mark.fe
 def test_finite_elements_take_the_place_of_the_closed_form(tmp_path, solved, monkeypatch):
-    """Solved here, quickly, for the depths of the set; the published solve recorded it finely."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     said = []
     found = read(set_of(tmp_path / "fe", solved, curves=True, fastest=5.0))

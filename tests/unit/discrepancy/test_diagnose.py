@@ -5,7 +5,6 @@ import json
 import math
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -151,9 +150,7 @@ def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_a_second_blow_meets_the_crater_of_the_first(
-    tmp_path: Path, set_of_balls: Callable[..., Path]
-) -> None:
+def test_a_second_blow_meets_the_crater_of_the_first(tmp_path, set_of_balls):
     def blows(name: str, *given: tuple[str, float]) -> Problem:
         rows = [f"t{k},ball,90,{v!r},{spot},2e-5" for k, (spot, v) in enumerate(given)]
         head = "trial,striker,angle_deg,impact_speed_m_s,spot,permanent_depth_m"

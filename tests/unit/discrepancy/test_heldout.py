@@ -44,7 +44,6 @@ def test_what_cells_share_is_learnt_from_those_that_were_kept(toy) -> None:
 
 
 def test_a_mechanism_foretells_what_it_was_not_shown(toy) -> None:
-    """Its size is learnt from one speed and foretells the other."""
     data = [20.0, 40.0]
     effect = toy.Effect("a", (40.0, 80.0))
     with_it, without = (held_out(toy.problem(data), toy.fit_of(data, *e)) for e in ((effect,), ()))

@@ -37,9 +37,7 @@ def test_a_scatter_was_varied_or_its_noise_misjudged(times) -> None:
     assert odd_repeats(given) == pytest.approx(math.log(0.2 / misjudged))
 
 
-def test_departures_from_a_law_are_3_10_and_30_per_cent_a_deviation_of_the_covariates_long(
-    toy,
-) -> None:
+def test_departures_from_a_law_are_3_10_and_30_per_cent_a_deviation_of_the_covariates_long(toy):
     found = outside_of(toy.problem([200.0, 200.0]), toy.fit_of([0.0, 0.0]))
     sizes = {round(math.sqrt(p.noise[0, 0] - 1.0) / 200.0, 6) for p in found.parts[1:]}
     assert sizes == {0.03, 0.1, 0.3}

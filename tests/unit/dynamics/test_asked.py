@@ -90,10 +90,7 @@ def test_what_changes_nothing_by_one_law_of_several_is_told():
 
 
 def test_a_rough_flat_over_a_plate_ends_within_the_usual_steps():
-    """The bends of the layer's force cut steps short; they grow again, the history is whole.
-
-    0.22 is what 400,000 steps had found before they did.
-    """
+    """The bends of its layer cut steps short for a while; 400,000 of these had found 0.22."""
     text = BALL.replace("laws", 'support = "plate"\nlaws').replace("2.0e11", "6.9e10", 1)
     text = text.replace("3.05e8", "1.5e8").replace("7870", "2700\nthickness_m = 0.015")
     text = text.replace("2.0e11", "6.2e11").replace("1.7e9", "4.0e9").replace("7800", "14900")

@@ -93,7 +93,6 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
 
 
 def laws_of(lines, name):
-    """The words of a law at each speed of an input of LAMMPS."""
     given = lines.split(f"variable {name} index &")[1].split("\nvariable")[0].split("\nlabel")[0]
     return [part.split() for part in given.split('"')[1::2]]
 
@@ -226,7 +225,6 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
 
 
 def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, capsys):
-    """Whatever laws the file shows beside each other."""
     file = tmp_path / "ball.toml"
     curve = '[target.hardening]\nlaw = "swift"\nK_Pa = 5e8\nn = 0.2\n'
     rigid = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")

@@ -169,7 +169,6 @@ def changed(changes: dict[str, object]) -> dict[str, object]:
 
 
 def answer(changes: dict[str, object]) -> list[float]:
-    """Restitution of the changed blow by each of its laws."""
     setup = setup_of(changed(changes), source="peen.toml")
     found = blow_of(setup, [law_named(name) for name in setup.laws])
     return [found[name].restitution for name in setup.laws]
@@ -262,9 +261,7 @@ def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert float(values["friction_impulse_ratio"]) == pytest.approx(0.13, rel=1e-6)
 
 
-def test_a_budget_that_runs_out_ends_with_code_3(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_budget_that_runs_out_ends_with_code_3(tmp_path, capsys):
     text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
     text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
     assert run(["impact", str(write(tmp_path, text)), "--out", str(tmp_path)]) == 3

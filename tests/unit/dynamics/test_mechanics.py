@@ -31,7 +31,6 @@ def setup(*, target=STEEL, ball=STEEL, radius=5e-3, law="hertz", speed=1.0, **ta
 
 
 def struck(**given):
-    """What the first law of such a set-up gives, and its blow."""
     one = setup(**given)
     blow = blow_of(one, [LAWS[one.laws[0]]])
     return blow[one.laws[0]], blow
@@ -143,7 +142,6 @@ def test_a_spin_is_the_strikers_own(radius, mass, friction, spin):
 
 
 def pair_of(rng):
-    """A soft and a hard sphere of any sizes, and their speed."""
     r = 10.0 ** rng.uniform(-3.3, -1.5, 2)
     strengths = 10.0 ** rng.uniform(8.3, 9.5, 2)
     one, two = (
@@ -291,7 +289,6 @@ def test_an_impact_that_did_not_end_has_no_numbers():
 
 
 def plated(thickness, *, radius=5e-3, speed=1.0, strength=math.inf):
-    """Restitution on a wide plate, with waves in it."""
     metal = Material(E=2.06e11, nu=0.3, density=7800.0, Sy=strength)
     law = LAWS["hertz" if math.isinf(strength) else "fitted"]
     ball = Striker(7800.0 * 4.0 / 3.0 * math.pi * radius**3, radius)

@@ -171,10 +171,7 @@ def test_a_law_at_another_radius_keeps_small_contacts_work_and_strains():
 
 
 def test_two_balls_lose_more_than_one_on_a_flat():
-    """Both by finite elements (quick): 0.427 and 0.470 at 10 m/s, between their unloadings.
-
-    A constant hardness would have 16 % (e^8 as R^3/m); between two balls it falls less.
-    """
+    """Both by finite elements (quick): 0.427 and 0.470 at 10 m/s, between their unloadings."""
     for speed, low, high in ((1.0, 0.08, 0.12), (10.0, 0.075, 0.115)):
         struck = []
         for text in (TWO, ON_FLAT):

@@ -64,13 +64,11 @@ def test_each_program_gets_the_restitution_and_the_depth(rows):
 
 
 def printed(text):
-    """The restitutions that a script printed, by speed."""
     found = re.findall(r"v = (\S+) m/s: restitution ([-.\d]+)(?:, of two balls ([-.\d]+))?", text)
     return {float(v): [float(e) for e in es if e] for v, *es in found}
 
 
 def dropped(files, command, folder):
-    """What a program prints of the files as they are."""
     for name, text in files.items():
         (folder / name).write_text(text)
     ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
@@ -119,7 +117,6 @@ def test_lammps_drops_what_was_written(rows, tmp_path):
 
 
 def test_drake_returns_what_the_table_says(rows):
-    """A ball on a half-space in Drake itself, with the numbers of the fragment."""
     pytest.importorskip("pydrake")
     from pydrake.geometry import AddContactMaterial, HalfSpace, ProximityProperties, Sphere
     from pydrake.math import RigidTransform

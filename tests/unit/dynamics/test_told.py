@@ -297,7 +297,6 @@ def test_strengths_far_apart_dent_the_weaker_body_alone():
 
 
 def merged(content, changes):
-    """The content with changes in its tables; None takes a key away."""
     for key, value in changes.items():
         if isinstance(value, dict) and isinstance(content.get(key, {}), dict):
             merged(content.setdefault(key, {}), value)
@@ -375,7 +374,6 @@ laws = ["fitted", "hertz"]
 
 
 def soft_ball(*speeds):
-    """A ball softer than its flat, swept."""
     body = {"E_Pa": 2e11, "nu": 0.3}
     ball = {**body, "Sy_Pa": 3e8, "density_kg_m3": 7800, "shape": "sphere", "tip_radius_m": 0.005}
     return setup({
@@ -445,7 +443,6 @@ TUNGSTEN = {
 
 
 def told(changes, laws=("fitted",), base=TUNGSTEN):
-    """A blow with some of its file changed, and all that is said of it."""
     content = tomllib.loads(base) if isinstance(base, str) else copy.deepcopy(base)
     found = blow(merged(content, changes), *laws)
     return found, "\n".join([*found.rules(), *found.checks()])

@@ -1,8 +1,4 @@
-"""The exported normal model of LAMMPS, compiled with its headers and tried through its interface.
-
-LAMMPS's own headers are looked for in its folder src/, which LAMMPS_SOURCE names; the driver brings
-what the model touches of them.
-"""
+"""The exported normal model of LAMMPS, compiled with its headers (LAMMPS_SOURCE) and tried."""
 
 import math
 import os

@@ -93,7 +93,6 @@ def test_a_bump_stands_for_six_and_a_half_pairs() -> None:
 
 
 def rows_of(**off):
-    """One case whose numbers are as the law has them, but for what is given."""
     n = 4
     D = np.geomspace(1e-3, 1e-2, n)
     ones = np.ones(n)
@@ -209,7 +208,6 @@ def test_every_fourth_depth_of_a_fit_and_every_third_of_a_path_is_looked_at(monk
 
 
 def record(radius, *, depth=None, turns=()):
-    """A case with given contact radii over R."""
     n = len(radius)
     onset = critical_depth(PAIR)
     delta = onset * np.geomspace(2.0, 50.0, n) if depth is None else depth
@@ -300,9 +298,7 @@ def test_a_law_of_a_solve_needs_three_unloadings() -> None:
         pair_table(solution, None)
 
 
-def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares(
-    monkeypatch,
-) -> None:
+def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares(monkeypatch):
     """Three hundredths of the exponent and a fiftieth of the energy given back."""
     one = np.ones(1)
     table = SimpleNamespace(edge_seen=one > 0.0, force=one, radius=one, share=0.5 * one)

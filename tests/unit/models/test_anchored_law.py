@@ -14,14 +14,12 @@ DEPTH = R * np.geomspace(1e-6, 0.08, 40)
 
 
 def hardens(factor: float) -> Pair:
-    """A flat that hardens, its whole curve times a factor."""
     curve = ludwik(Sy=factor * 250e6, K=factor * 300e6, n=0.35)
     flat = Material(E=70e9, nu=0.33, Sy=curve.strength, flow=Flow(curve))
     return Pair(BALL, flat, R)
 
 
 def sheet(factor: float) -> Pair:
-    """The same as a data sheet has it: its strength at 0.2 %."""
     curve = hardens(factor).flat.flow.curve
     return Pair(BALL, Material(E=70e9, nu=0.33, Sy=curve(0.002)), R)
 

@@ -1,8 +1,7 @@
-"""Every numbered equation that a function holds, against a value worked by hand.
+"""Every numbered equation of docs/theory.md that a function holds, against a value worked by hand.
 
-`BY_HAND` is keyed as the equations of docs/theory.md; a test compares the two lists. The values
-were worked with a calculator from the corrected equations (docs/thesis/errata.md), for steel on
-steel of E = 200 GPa, nu = 0.3, Sy = 300 MPa and R = 10 mm where no other numbers are named.
+From the corrected equations (docs/thesis/errata.md), for steel on steel of E = 200 GPa, nu = 0.3,
+Sy = 300 MPa and R = 10 mm where no other numbers are named.
 """
 
 import math

@@ -16,7 +16,6 @@ DEPTH = np.geomspace(1e-6, 1e-4, 7)
 
 @pytest.fixture
 def fitted(tmp_path):
-    """A fit of one's own: the shipped one with another first coefficient."""
     content = json.loads(COEFFICIENTS_FILE.read_text())
     first = next(iter(content["coefficients"].values()))
     first["value"] *= 1.1

@@ -16,7 +16,6 @@ PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1.h5"
 
 @pytest.fixture(scope="module")
 def solved():
-    """A published case whose bodies both yield, and its table."""
     record = next(r for r in read_curves(PART) if 0.9 < r.case.pair.Sy_ratio < 1.2)
     pair, c = record.case.pair, record.curve
     few = np.full(len(c["delta"]), 0.004)

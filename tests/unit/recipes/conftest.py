@@ -64,7 +64,6 @@ class Recipe:
         return self.over / file
 
     def write(self, file, text):
-        """Write a new file that the recipe names."""
         assert not (ROOT / file).exists()
         self._named(file).write_text(text, encoding="utf-8")
 
@@ -84,13 +83,11 @@ class Recipe:
         )  # fmt: skip
 
     def dentscope(self, *words):
-        """Use a command; return what it prints."""
         answer = self._run("dentscope", *words)
         assert answer.returncode == 0, answer.stderr
         return answer.stdout
 
     def pytest(self, file, *words):
-        """Run tests of the checkout; return pytest's exit code and what it prints."""
         answer = self._run(
             "pytest", str(ROOT / file), "-q", "-p", "no:cacheprovider", "--rootdir", str(ROOT),
             "-c", str(ROOT / "pyproject.toml"), "-p", "no:xdist", *words,
@@ -100,5 +97,4 @@ class Recipe:
 
 @pytest.fixture
 def recipe(tmp_path):
-    """Begin a recipe by its title."""
     return lambda title: Recipe(title, tmp_path)

@@ -14,7 +14,6 @@ PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
 def neighbour(file, *changes):
-    """A copy of a file of the checkout under other names."""
     text = (ROOT / file).read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text

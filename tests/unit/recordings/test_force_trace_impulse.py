@@ -13,7 +13,6 @@ MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6
 
 
 def judged(folder: Path, *, scale: float, restitution: float | None, upto: float = 1.0):
-    """Its half sine has `scale` times the true impulse."""
     impulse = MASS * ((1.0 + E) * SPEED + 9.81 * TIME)
     t = np.linspace(0.0, upto * TIME, 401)
     force = scale * impulse * np.pi / (2.0 * TIME) * np.sin(np.pi * t / TIME)
@@ -24,7 +23,6 @@ def judged(folder: Path, *, scale: float, restitution: float | None, upto: float
 
 
 def set_of(trace: Path, restitution: float | None) -> RecordingSet:
-    """A ball of 50 g at 2 m/s."""
     ball = StrikerTable(
         shape="sphere", tip_radius_m=Quantity(value=0.0115, std=0.0),
         mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,

@@ -57,15 +57,12 @@ def set_of(tmp_path):
 
 
 def of_check(findings, name):
-    """The one finding whose check holds some words."""
     [found] = [f for f in findings if name in f.check]
     return found
 
 
 @pytest.mark.parametrize(("std", "said"), [(0.024, "CONTRADICTION"), (0.026, "CONSISTENT")])
-def test_a_dent_takes_055_of_its_work_at_the_least_and_four_deviations_contradict(
-    std, said
-) -> None:
+def test_a_dent_takes_055_of_its_work_at_the_least_and_four_deviations_contradict(std, said):
     """0.55 of 2 J are 0.1 J more than was brought."""
     found = _supply("a", TrialReading(2.0, 0.0), TrialReading(1.0, std))
     assert found.severity is Severity[said]

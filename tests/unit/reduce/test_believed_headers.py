@@ -22,7 +22,6 @@ def clip(path):
 
 
 def patched(path, tag, value):
-    """Overwrite a number in the header of the first page."""
     with tifffile.TiffFile(path) as file:
         found = file.pages[0].tags[tag]
         place, kind = found.valueoffset, "<H" if found.dtype == 3 else "<I"

@@ -19,9 +19,7 @@ PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)
 
 @pytest.mark.parametrize("name", [n for n in PATHS if "\x00" not in n])
 @pytest.mark.parametrize("place", ["--out", "--into"])
-def test_an_option_names_no_other_folder(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, place: str
-) -> None:
+def test_an_option_names_no_other_folder(tmp_path, capsys, name, place):
     raw = tmp_path / "raw.csv"
     raw.write_text(TABLE)
     code = run(

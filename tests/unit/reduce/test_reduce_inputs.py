@@ -221,7 +221,6 @@ def test_tension_and_leeb_tables_into_a_set(tmp_path):
 
 
 def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, capsys):
-    """A curve of another body, or of another name, stays as its author wrote it."""
     strain = np.linspace(0.0, 0.1, 300)
     for name, slope in (("a", 1e9), ("b", 2e9)):
         stress = np.minimum(200e9 * strain, 300e6 + slope * strain)
@@ -248,7 +247,6 @@ def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, cap
 
 
 def test_many_mistakes_of_the_set_that_a_reduction_would_write_are_many_lines(tmp_path):
-    """A set whose own files are wrong, each mistake by a line of its own that names the folder."""
     text = 'format = "recording-set/1"\nname = "a"\n[target]\nE_Pa = 2\nnu = 0.7\n'
     with pytest.raises(InputErrors) as caught:
         read_as(tmp_path / "set", {"set.toml": text, "trials.csv": "trial\n"}, unfinished=True)

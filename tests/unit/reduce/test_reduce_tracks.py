@@ -186,10 +186,7 @@ def test_a_flat_that_drifts_through_the_picture():
 
 
 def _local_parabola(time, height, turning, way, count):
-    """Fit one side of a contact by itself: above the marble's own shadow, as a parabola.
-
-    It ends before the shadow of the next contact, found or not: within one flight.
-    """
+    """Fit one side of a contact by a parabola, above this and the next one's shadow."""
     index = turning + way * np.arange(2, count + 42)
     index = index[(index >= 0) & (index < time.size)]
     above = np.flatnonzero(height[index] - height[turning] > 20.0)

@@ -25,9 +25,7 @@ PAIR = Pair(HARD, STEEL, 1e-3)
     ("speeds", "out"),
     [([1.0] * 6 + [1.8, 2.0], [7]), ([1.0] * 6 + [1.82, 2.0], [6, 7]), ([1.0] * 5 + [2.0], [])],
 )
-def test_what_is_faster_than_nine_tenths_is_kept_out_where_six_numbers_are_left(
-    speeds, out
-) -> None:
+def test_what_is_faster_than_nine_tenths_is_kept_out_where_six_numbers_are_left(speeds, out):
     given = SimpleNamespace(
         conditions=[SimpleNamespace(speed=v) for v in speeds],
         cells=SimpleNamespace(condition=np.arange(len(speeds))),

@@ -15,7 +15,6 @@ def dent(place, width):
 
 
 def sweep(number=3, **changes):
-    """A sweep as the text describes it."""
     x = np.log(RATIO)
     fall = np.where(x < 0.0, 0.93 - 0.25 * np.exp(x / 0.08), 0.18 + 0.45 * np.exp(-x / 0.15))
     dip = (

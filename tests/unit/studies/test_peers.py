@@ -132,7 +132,6 @@ def test_the_probability_of_the_truth_and_what_separates_two() -> None:
 
 
 def sealed_run(folder, count=3):
-    """A run whose verdicts are sealed; the second set has a wrong mass."""
     ledger = Ledger(folder / "ledger.jsonl")
     for place in ("sets", "truths", "verdicts"):
         (folder / place).mkdir(parents=True)

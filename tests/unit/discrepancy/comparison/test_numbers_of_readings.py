@@ -71,7 +71,6 @@ def test_the_noise_of_a_curve_is_that_of_forty_copies() -> None:
 
 @pytest.fixture
 def balls(set_of_balls, tmp_path):
-    """A set of one ball, whose rows are given."""
     return lambda rows, **more: read(set_of_balls(tmp_path, rows, **more))
 
 

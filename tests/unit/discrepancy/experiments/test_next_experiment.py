@@ -60,7 +60,6 @@ def test_information_ends_at_the_entropy_and_begins_at_nothing() -> None:
 
 
 def test_rivals_without_probability_tell_nothing() -> None:
-    """Where something outside has all of it, the sum over the rivals is nought."""
     one, two = of_one(0.0, 1.0), of_one(50.0, 1.0)
     assert information([one, two], [0.0, 0.0]) == 0.0
     assert information([one, two], [1.0, 0.0]) == 0.0
@@ -129,7 +128,6 @@ def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(to
 
 
 def test_bodies_that_do_not_yield_leave_nothing_to_scan(toy) -> None:
-    """No crater of a golf ball."""
     elastic = replace(on_rig(toy, ball=BALL), baseline="elastic")
     assert not {"permanent_depth_m", "dent_diameter_m"} & set(_not_measured(elastic))
     assert "contact_time_s" in _not_measured(elastic)

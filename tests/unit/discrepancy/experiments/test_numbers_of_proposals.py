@@ -53,8 +53,6 @@ def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
 
 @pytest.fixture
 def pressed_set(toy, monkeypatch):
-    """A problem whose trials go as deep as some loads; loads of the presses that are proposed."""
-
     def loads(*reached, pressed=False, second=None, told=False):
         pair = Pair(Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3), 0.01)
         scenes = [SimpleNamespace(law=None, pair=pair, load=x) for x in reached]
@@ -83,9 +81,7 @@ def test_presses_have_four_loads_where_they_are_half_apart(pressed_set) -> None:
     assert pressed_set(100.0, 149.0) == [50.0, 150.0]
 
 
-def test_a_bench_presses_with_20_to_5000_newtons_and_three_times_beyond_what_was(
-    pressed_set,
-) -> None:
+def test_a_bench_presses_with_20_to_5000_newtons_and_three_times_beyond_what_was(pressed_set):
     assert pressed_set(2.0, 20000.0) == [20.0, 130.0, 790.0, 5000.0]
     found = pressed_set(100.0, 800.0, pressed=True)
     assert (found[0], found[-1]) == (33.0, 2400.0)

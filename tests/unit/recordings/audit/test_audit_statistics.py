@@ -1,9 +1,7 @@
-"""How often the audit is right: sets made by the impact stage, noise as stated, seeds of our own.
+"""How often the audit is right about sets of the impact stage, made by laws that it does not know.
 
-The sets come from the impact integrator with laws that the audit does not know; a wrong mass is a
-mass that was written down 5 % off after the impacts happened with the true one. The rods are
-slender (round ends are at most 2 % of the mass): of a single rod with heavier ends the audit cannot
-tell a wrong mass from a length that was measured over all. Sets of several rods are checked below.
+A wrong mass was written down 5 % off. Rods are slender (round ends: 2 % of the mass at most): of
+one with heavier ends a wrong mass is not told from a length over all. Several rods: below.
 """
 
 from functools import cache
@@ -31,7 +29,6 @@ LAW_NAMES = [n for n in ("jackson-green", "ghaednia", "kogut-komvopoulos") if n 
 
 
 def quantity(true, relative, rng):
-    """A stated value whose error is as large as it says."""
     value = true * (1.0 + relative * rng.standard_normal())
     return Quantity(value=value, std=relative * value)
 

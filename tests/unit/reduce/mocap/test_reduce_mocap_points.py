@@ -16,7 +16,6 @@ RAW = ROOT.parent / "shared" / "recordings" / "tabletennis-spin-bounce" / "traje
 
 
 def _flight(path: Path, *, drag: float = 2.0, noise: float = 5e-4) -> None:
-    """A ball that falls at 3 m/s, e = 0.8, slides at mu = 0.2 and slows by an even drag."""
     random = np.random.default_rng(2)
     t = np.arange(80) / 200.0 - 0.2013
     late = np.maximum(t, 0.0)

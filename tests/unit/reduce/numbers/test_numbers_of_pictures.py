@@ -112,9 +112,7 @@ def test_a_position_is_known_to_a_thousandth_and_drifts(monkeypatch) -> None:
     assert seen[0].drift(0.0) == pytest.approx(0.105)
 
 
-def test_a_reflection_is_read_in_twelve_frames_from_one_to_three_and_a_half_blurs(
-    monkeypatch,
-) -> None:
+def test_a_reflection_is_read_in_twelve_frames_from_one_to_three_and_a_half_blurs(monkeypatch):
     """Of a blur of 2 above a lowest row of 100: between rows 93 and 98."""
     rows = np.append(np.linspace(80.0, 99.0, 1901), 100.0)
     poses = [(k, SimpleNamespace(x=0.0, y=float(y), lean=0.0)) for k, y in enumerate(rows)]
@@ -151,9 +149,7 @@ def test_the_shape_of_a_rod_is_read_from_thirty_frames(frames, reach, monkeypatc
 
 
 @pytest.mark.parametrize(("sharp", "kind"), [(16, "light"), (17, "sharp")])
-def test_a_ball_is_followed_by_its_edge_where_four_fifths_show_one(
-    sharp, kind, monkeypatch
-) -> None:
+def test_a_ball_is_followed_by_its_edge_where_four_fifths_show_one(sharp, kind, monkeypatch):
     def found(x):
         return SimpleNamespace(x=x, y=0.0, row_std=0.0, radius=5.0, bright=1.0)
 

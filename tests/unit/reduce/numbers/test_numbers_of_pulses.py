@@ -81,9 +81,7 @@ def test_a_hole_of_a_tenth_of_the_pulse_is_refused(gap, refused) -> None:
 @pytest.mark.parametrize(
     ("at_top", "beside", "flat"), [(10, 10, 0), (11, 9, 11), (3, 2, 0), (4, 1, 4)]
 )
-def test_a_flat_top_has_more_equal_samples_than_the_converters_steps_leave(
-    at_top, beside, flat
-) -> None:
+def test_a_flat_top_has_more_equal_samples_than_the_converters_steps_leave(at_top, beside, flat):
     """Steps of 1 below a peak of 100: a round top has its root of 1 to 10 of what is above 90.
 
     Of 20 samples these are 6.3, and 1.7 times as many are too many; of 5 it takes four.
@@ -95,7 +93,6 @@ def test_a_flat_top_has_more_equal_samples_than_the_converters_steps_leave(
 
 
 def looked_at(clear, ends=(25.0, 55.0)):
-    """What is said of a record with a sample a second."""
     clear = np.asarray(clear, dtype=float)
     return shape_of(np.arange(clear.size * 1.0), clear, int(np.argmax(clear)), ends, 0.0, source="")
 

@@ -1,8 +1,6 @@
 """Forty sheets as laboratories of eight languages keep them: how many are read right.
 
-Five layouts a language, made with the words of that language; what each holds is known. A number
-that is not the one written counts as wrong in silence; a sheet that is refused, or of which a
-column is told as left out, does not.
+Another number than the one written is wrong in silence; what is refused or told is not.
 """
 
 import csv

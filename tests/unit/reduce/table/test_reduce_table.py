@@ -165,7 +165,6 @@ def test_shock_of_a_drop_tower():
 @pytest.mark.parametrize("swings_in", [1.2, 3.0, 7.0])
 @pytest.mark.parametrize("part", [0.1, -0.25])
 def test_a_ringing_slower_than_the_pulse_stays_unknown(swings_in, part):
-    """It widens the peak by itself, and leaves a pulse that is plain to see."""
     time, long = np.arange(0.0, 0.2, 5e-5), 0.01
     late = np.maximum(time - 0.05 - long, 0.0)
     ring = part * np.exp(-late / (5.0 * long)) * np.sin(2.0 * np.pi * late / (swings_in * long))

@@ -111,7 +111,6 @@ def test_a_point_before_three_digits_is_what_the_other_numbers_say(tmp_path, tex
 
 
 def test_a_number_that_may_be_a_thousand_is_told_and_its_row_left_out(tmp_path):
-    """Nothing says so: the row takes no height of another."""
     file = tmp_path / "a.csv"
     file.write_text("drop height (mm);dent depth (um)\n500;55\n1.000;80\n2000;90\n")
     sheet = read_sheet(file)
@@ -450,7 +449,6 @@ def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tm
 
 
 def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
-    """A number's own point is none of thousands either."""
     openpyxl = pytest.importorskip("openpyxl")
     book = openpyxl.Workbook()
     for row in (["Fallhöhe (cm)", "Eindruck Ø (mm)", "Bemerkung"], [2.5, "0,722", 5],

@@ -14,7 +14,6 @@ from dentscope.studies.proof.lists import Entry
 
 @pytest.fixture
 def sealed(tmp_path):
-    """A run with one sealed set and verdict."""
     for place in ("sets/set-0000", "truths", "verdicts"):
         (tmp_path / place).mkdir(parents=True)
     (tmp_path / "sets/set-0000/trials.csv").write_text("trial\n")

@@ -16,7 +16,6 @@ KINDS = [
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
-    """One draw of an effect is enough here: sizes are not asked for."""
     monkeypatch.setattr(truth, "size_of", lambda *args, **more: 10.0)
     monkeypatch.setattr(truth.Visibility, "size", lambda *args: 10.0)
     monkeypatch.setattr(truth, "beyond_library", lambda *args: 10.0)
