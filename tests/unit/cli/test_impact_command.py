@@ -1,7 +1,6 @@
 """`dentscope impact`: templates run as they are, sweeps go to files, nothing is cut at 80."""
 
 import csv
-from pathlib import Path
 
 import pytest
 from dentscope.cli import run
@@ -46,16 +45,6 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
     assert "2 impacts of the sweep did not end: see the column outcome" in told
     assert "changes nothing" not in told
     assert not (out / "ball-sweep.png").exists()
-
-
-def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = tmp_path / "mine.toml"
-    file.write_text("mine")
-    assert run(["impact", "--new", "ball", str(file)]) == 2
-    assert "exists (allowed: a name that is free)" in capsys.readouterr().err
-    assert file.read_text() == "mine"
-    assert run(["impact", "--new", "cube"]) == 2
-    assert "no set-up 'cube' (allowed: ball, rod, oblique-ball)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -152,6 +152,7 @@ fit words.h5
 fit folder
 fit --out words.txt
 fit --judge absent
+fit --judge words.txt
 export law --out words.txt
 examples --to words.txt
 examples extra
@@ -165,7 +166,9 @@ figures --chapter 9
 figures --fields 9.9
 figures --out words.txt
 verify --folder words.txt
+verify --report folder
 proof sample words.txt
+proof sample new --kind nonsense
 proof sample new --seed -1
 proof sample new --count 0
 proof run --most 0
@@ -173,6 +176,8 @@ proof score --out words.txt
 """
 USES = [line.split() for line in LINES.strip().splitlines()]
 SAID = {
+    "impact --new ball ball.toml": "exists (allowed: a name that is free)",
+    "impact --new cube": "no set-up 'cube' (allowed: ball, rod, oblique-ball)",
     "nonsense": "no command", "campaign run --design huge": "smoke",
     "campaign run --workers 0": "workers", "campaign run --retry all": "failed",
     "campaign show zz": "no case", "campaign export --data absent.h5": "no such file",
@@ -183,6 +188,10 @@ SAID = {
 }  # fmt: skip
 
 
+def files() -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()}
+
+
 def test_there_are_more_than_a_hundred():
     assert len({tuple(use) for use in USES}) == len(USES) > 100
     assert SAID.keys() <= {" ".join(use) for use in USES}
@@ -190,8 +199,10 @@ def test_there_are_more_than_a_hundred():
 
 @pytest.mark.parametrize("use", USES, ids=" ".join)
 def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    before = files()
     code = run(use)
     told = capsys.readouterr()
+    assert files() == before
     assert code == 2, told.out
     lines = told.err.strip().splitlines()
     # a line a mistake: a file of another kind has several
@@ -202,30 +213,13 @@ def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixt
     assert told.out == ""
 
 
-QUICK = """
-figures --chapter 9
-figures --fields 9.9
-figures --out words.txt
-verify --only nonsense
-verify --folder words.txt
-verify --report folder
-proof run --list nonsense
-proof score --out words.txt
-proof sample new --kind nonsense
-proof sample words.txt
-fit absent.h5
-fit words.h5
-fit folder
-fit --judge words.txt
-"""
-
-
 def test_what_is_wrong_is_told_before_the_solver_is_loaded():
     # compiled kernels alone take seconds to load; a process of its own shows what was loaded
+    quick = [line for line in USES if line[0] in ("figures", "verify", "proof", "fit")]
     said = (
         "import sys; from dentscope.cli import run\n"
-        f"for line in {QUICK.strip().splitlines()!r}:\n"
-        "    assert run(line.split()) == 2, line\n"
+        f"for line in {quick!r}:\n"
+        "    assert run(line) == 2, line\n"
         "    assert not {'numba', 'scipy'} & set(sys.modules), line\n"
     )
     answer = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True)

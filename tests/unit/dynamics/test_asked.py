@@ -61,17 +61,13 @@ def test_a_standard_deviation_of_a_mechanism_enters_the_band():
         ("contact-damping = { damping = 0.1 }", "unknown key"),
         ("damping = true", "contact-damping"),
         ("adhesion = true", "missing"),
-        ("half-space-waves = true\n[target]\n", ""),
+        ("half-space-waves = true", r"mechanisms.half-space-waves: given beside"),
     ],
 )
 def test_a_wrong_mechanism_is_one_line(lines, words):
-    if not words:
-        text = BALL.replace("laws", 'support = "half-space"\nlaws')
-        with pytest.raises(InputErrors, match=r"mechanisms.half-space-waves: given beside"):
-            setup(text + "[mechanisms]\nhalf-space-waves = true\n")
-        return
+    waves = 'support = "half-space"\nlaws' if "half-space" in lines else "laws"
     with pytest.raises(InputErrors, match=words):
-        setup(BALL + "[mechanisms]\n" + lines + "\n")
+        setup(BALL.replace("laws", waves) + "[mechanisms]\n" + lines + "\n")
 
 
 def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():

@@ -150,19 +150,18 @@ def pair_of(rng):
     return one, two, 10.0 ** rng.uniform(-0.5, 1.3)
 
 
-def told_from(one, other, speed, law="fitted", *, all=False):
+def told_from(one, other, speed):
     own = {k: v for k, v in one.items() if k != "radius"}
     mass = 7800.0 * 4.0 / 3.0 * math.pi * other["radius"] ** 3
     target = {k: v for k, v in other.items() if k != "radius"}
     target |= {"shape": "sphere", "radius_m": other["radius"], "mass_kg": mass}
-    found = struck(target=target, ball=own, radius=one["radius"], law=law, speed=speed)
-    return found if all else found[0]
+    return struck(target=target, ball=own, radius=one["radius"], law="fitted", speed=speed)
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_one_blow_of_two_spheres_is_the_same_from_either_side(seed):
     one, two, speed = pair_of(np.random.default_rng(seed))
-    a, b = told_from(one, two, speed), told_from(two, one, speed)
+    (a, _), (b, _) = told_from(one, two, speed), told_from(two, one, speed)
     for name in ("restitution", "peak_force_N", "peak_depth_m", "contact_time_s"):
         assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-6), name
     assert a.residual_sphere_m == pytest.approx(b.residual_flat_m, rel=1e-6, abs=1e-13)
@@ -172,7 +171,7 @@ def test_one_blow_of_two_spheres_is_the_same_from_either_side(seed):
 def test_what_is_told_of_two_spheres_is_the_same_from_either_side():
     soft, hard = {"radius": 1e-3, "Sy_Pa": 3e8, **STEEL}, {"radius": 0.1, "Sy_Pa": 3e9, **STEEL}
     one, two = (
-        [x for x in told_from(*both, 10.0, all=True)[1].checks() if "along the approach" not in x]
+        [x for x in told_from(*both, 10.0)[1].checks() if "along the approach" not in x]
         for both in ((soft, hard), (hard, soft))
     )
     assert one == two
@@ -182,7 +181,7 @@ def test_what_is_told_of_two_spheres_is_the_same_from_either_side():
 def test_a_small_soft_sphere_is_the_laws_whichever_strikes():
     """Finite elements of the soft one on a flat of 3 GPa: e 0.3259, 135.6 N, 21.40 um left."""
     soft = {"radius": 1e-3, "Sy_Pa": 3e8, **STEEL}
-    found = told_from({"radius": 0.1, "Sy_Pa": 3e9, **STEEL}, soft, 10.0)
+    found, _ = told_from({"radius": 0.1, "Sy_Pa": 3e9, **STEEL}, soft, 10.0)
     assert found.restitution == pytest.approx(0.3259, rel=0.01)
     assert found.peak_force_N == pytest.approx(135.6, rel=0.01)
     assert found.residual_flat_m == pytest.approx(21.40e-6, rel=0.01)
@@ -280,12 +279,6 @@ def test_a_ball_that_is_put_down_is_no_blow():
             one.check_laws([LAWS["fitted"]])
     fast.check_laws([LAWS["fitted"]])
     assert blow_of(fast, [LAWS["fitted"]])["fitted"].restitution == pytest.approx(1.0, abs=0.02)
-
-
-def test_an_impact_that_did_not_end_has_no_numbers():
-    found, _ = struck(target={**STEEL, "Sy_Pa": 3e8}, law="fitted", impact={"max_steps": 10})
-    assert not found.outcome.completed
-    assert np.isnan([found.restitution, found.peak_force_N]).all()
 
 
 def plated(thickness, *, radius=5e-3, speed=1.0, strength=math.inf):

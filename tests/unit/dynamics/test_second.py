@@ -9,11 +9,11 @@ from dentscope.core import InputError, InputErrors, Material, Pair
 from dentscope.core.flow import Flow, swift
 from dentscope.dynamics import Approach, Friction, Scene, Striker, impacts, strike
 from dentscope.dynamics.files.second import SecondSphere, radius_error
-from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.told.band import last_blow
 from dentscope.dynamics.told.beside import error_of
 from dentscope.models import LAWS
 from dentscope.models.turned import similar
+from made_blows import setup
 
 STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)
 HARD = Material(E=205e9, nu=0.3, density=7800.0)
@@ -67,7 +67,7 @@ def test_elastic_spheres_from_a_file_are_hertzs(radius, mass, modulus, speed):
                        struck, 1)  # fmt: skip
     text = text.replace("Sy_Pa = 6.0e8\n", "").replace("E_Pa = 2.05e11", f"E_Pa = {modulus}", 1)
     text = text.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
-    found = strike(setup_of(tomllib.loads(text), source="two.toml").scene(LAWS["hertz"]))
+    found = strike(setup(text).scene(LAWS["hertz"]))
     R = 1.0 / (1.0 / 5e-3 + 1.0 / radius)
     m = 1.0 / (1.0 / 0.004084070449666731 + (1.0 / mass if mass else 0.0))
     E = 1.0 / ((1.0 - 0.09) / 205e9 + (1.0 - 0.09) / modulus)
@@ -173,13 +173,10 @@ def test_a_law_at_another_radius_keeps_small_contacts_work_and_strains():
 def test_two_balls_lose_more_than_one_on_a_flat():
     """Both by finite elements (quick): 0.427 and 0.470 at 10 m/s, between their unloadings."""
     for speed, low, high in ((1.0, 0.08, 0.12), (10.0, 0.075, 0.115)):
-        struck = []
-        for text in (TWO, ON_FLAT):
-            content = tomllib.loads(text)
-            content["impact"]["impact_speed_m_s"] = speed
-            scene_ = setup_of(content, source="file").scene(LAWS["fitted"])
-            struck.append(strike(scene_).restitution)
-        two, one = struck
+        two, one = (
+            strike(setup(x.replace("m_s = 1", f"m_s = {speed}")).scene(LAWS["fitted"])).restitution
+            for x in (TWO, ON_FLAT)
+        )
         assert low < 1.0 - two / one < high
 
 
@@ -187,7 +184,7 @@ def test_equal_spheres_keep_equal_dents_and_unequal_ones_what_finite_elements_ha
     """The smaller's part at 0.02 and 0.05 R with R_2 = 2 R_1: 0.524 and 0.616 (E/300)."""
     for speed in (1.0, 10.0):
         text = TWO.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
-        found = last_blow(setup_of(tomllib.loads(text), source="two.toml"), LAWS["fitted"])
+        found = last_blow(setup(text), LAWS["fitted"])
         assert found.residual_flat_m == pytest.approx(found.residual_sphere_m, rel=1e-9) != 0.0
     metal = Material(E=200e9, nu=0.3, Sy=200e9 / 300.0)
     R = 1e-3 / 1.5
@@ -216,9 +213,7 @@ def test_rough_spheres_that_slide_are_the_same_from_either_side():
     swapped = {**content["strikers"]["ball"], "tip_radius_m": 0.004, "Sy_Pa": 4e8}
     other["target"] |= {"radius_m": 0.005, "Sy_Pa": 6e8}
     other["strikers"] = {"ball": swapped}
-    here, there = (
-        last_blow(setup_of(one, source="two.toml"), LAWS["fitted"]) for one in (content, other)
-    )
+    here, there = (last_blow(setup(one), LAWS["fitted"]) for one in (content, other))
     assert there.restitution == pytest.approx(here.restitution, rel=1e-6)
     assert there.residual_flat_m == pytest.approx(here.residual_sphere_m, rel=1e-6)
     assert there.residual_sphere_m == pytest.approx(here.residual_flat_m, rel=1e-6)
@@ -235,7 +230,7 @@ def test_what_only_one_shape_has_is_refused_for_the_other():
         (TWO.replace("radius_m = 0.005\n", "radius_m = -0.004\n", 1), "target.radius_m"),
     ):
         with pytest.raises((InputError, InputErrors)) as told:
-            setup_of(tomllib.loads(text), source="file").scene(LAWS["fitted"])
+            setup(text).scene(LAWS["fitted"])
         assert key in str(told.value)
 
 

@@ -1,6 +1,7 @@
 """Tuned numbers of the audit where they act, in balances that are worked out by hand."""
 
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -81,12 +82,9 @@ def test_a_force_that_a_rod_cannot_bear_is_judged_by_a_bound_known_to_a_twentiet
     """Yields at 1e8 * pi * 25e-6 N; half as much again is 0.5 of it, in 0.05."""
     bound = 1e8 * math.pi * 25e-6
     found = set_of(
-        ROD + "Sy_Pa = 1e8\n",
-        angle_deg=[90],
-        impact_speed_m_s=[10],
-        peak_force_N=[1.5 * bound],
+        ROD + "Sy_Pa = 1e8\n", angle_deg=[90], impact_speed_m_s=[10], peak_force_N=[1.5 * bound],
         noise="peak_force_N_relative = 1e-6\n",
-    )
+    )  # fmt: skip
     assert of_check(check_force(found), "yield").significance == pytest.approx(10.0, rel=1e-3)
 
 
@@ -116,11 +114,9 @@ def test_a_mean_pressure_lies_between_a_third_of_a_hardness_and_a_third_above_it
     set_of, target, pressure, said
 ):
     found = set_of(
-        target=target,
-        load_N=[pressure * math.pi * 0.25e-6],
-        dent_diameter_m=[1e-3],
+        target=target, load_N=[pressure * math.pi * 0.25e-6], dent_diameter_m=[1e-3],
         noise="dent_diameter_m = 1e-9\nload_N_relative = 1e-4\n",
-    )
+    )  # fmt: skip
     assert of_check(check_press_load(found), "load").severity is Severity[said]
 
 
@@ -159,33 +155,25 @@ def test_a_contact_is_0975_of_its_circle_of_the_depth_where_no_diameter_was_read
     assert seen.significance == pytest.approx((2.0 - 0.85 / 0.675) * back / error, rel=1e-4)
 
 
+PRESSED = {"load_N": [500], "permanent_depth_m": [4e-5], "recovered_depth_m": [1e-5]}
+DEPTHS = "permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e-6\n"
+GAUGE = "[gauge]\npermanent_depth_m = 0.04\npress_depth_m = 0.04\n"
+
+
 @pytest.mark.parametrize(("off", "said"), [(3.9, "CONSISTENT"), (4.1, "CONTRADICTION")])
 def test_four_standard_deviations_are_a_mistake(set_of, off, said):
     """What stays and what springs back are the depth under load; each is known to 1 um."""
-    found = set_of(
-        BALL + "Sy_Pa = 2e9\n", load_N=[500], permanent_depth_m=[4e-5],
-        recovered_depth_m=[1e-5], press_depth_m=[5e-5 + off * math.sqrt(3.0) * 1e-6],
-        noise="permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e-6\n",
-    )  # fmt: skip
+    depth = 5e-5 + off * math.sqrt(3.0) * 1e-6
+    found = set_of(BALL + "Sy_Pa = 2e9\n", **PRESSED, press_depth_m=[depth], noise=DEPTHS)
     assert of_check(check_press_depths(found), "depths").severity is Severity[said]
 
 
-def test_the_error_of_a_scale_is_no_contradiction(set_of):
+@pytest.mark.parametrize(("scales", "error"), [("", 3.0), (GAUGE, 3.0 + 1.6**2 + 2.4**2)])
+def test_the_error_of_a_scale_is_no_contradiction(set_of, scales, error):
     """10 of 60 um are not accounted for; a scale may be 4 % off, and readings 1 um."""
-    read = {"load_N": [500], "permanent_depth_m": [4e-5], "recovered_depth_m": [1e-5]}
-    noise = "permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e-6\n"
-    gauge = "[gauge]\npermanent_depth_m = 0.04\npress_depth_m = 0.04\n"
-    seen = [
-        of_check(
-            check_press_depths(
-                set_of(BALL + "Sy_Pa = 2e9\n", **read, press_depth_m=[6e-5], noise=noise + more)
-            ),
-            "depths",
-        ).significance
-        for more in ("", gauge)
-    ]
-    assert seen[0] == pytest.approx(10.0 / math.sqrt(3.0), rel=1e-9)
-    assert seen[1] == pytest.approx(10.0 / math.sqrt(3.0 + 1.6**2 + 2.4**2), rel=1e-9)
+    found = set_of(BALL + "Sy_Pa = 2e9\n", **PRESSED, press_depth_m=[6e-5], noise=DEPTHS + scales)
+    seen = of_check(check_press_depths(found), "depths")
+    assert seen.significance == pytest.approx(10.0 / math.sqrt(error), rel=1e-9)
 
 
 def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
@@ -217,31 +205,29 @@ def test_an_impulse_is_a_quarter_to_all_of_peak_force_times_duration(set_of):
     assert _pulse(set_of, 1.01).significance == pytest.approx(0.01 / 1.01 / 0.003, rel=1e-4)
 
 
-def test_masses_share_a_fiftieth_of_false_alarms_and_one_alone_has_it_all(set_of):
-    """A ball's mass that is off by z errors: two-sided beyond 2.33 is 0.02."""
+DENSE = "density_kg_m3 = 7800\n"
+SOLID = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9
 
-    def said(z):
-        mass = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9 * (1.0 + z * 0.01)
-        ball = BALL.replace("4e-3", f"{{ value = {mass}, std = {0.01 * mass} }}")
-        found = set_of(ball + "density_kg_m3 = 7800\n", angle_deg=[90], impact_speed_m_s=[1])
-        return check_mass(found)[0].severity.name
 
-    assert said(2.25) == "CONSISTENT"
-    assert said(2.45) == "CONTRADICTION"
+def off_by(z):
+    """A ball whose stated mass is off by z of its errors, 1 % each."""
+    mass = SOLID * (1.0 + z * 0.01)
+    return BALL.replace("4e-3", f"{{ value = {mass}, std = {0.01 * mass} }}") + DENSE
+
+
+@pytest.mark.parametrize(("z", "said"), [(2.25, "CONSISTENT"), (2.45, "CONTRADICTION")])
+def test_masses_share_a_fiftieth_of_false_alarms_and_one_alone_has_it_all(set_of, z, said):
+    """Two-sided beyond 2.33 is 0.02."""
+    found = set_of(off_by(z), angle_deg=[90], impact_speed_m_s=[1])
+    assert check_mass(found)[0].severity.name == said
 
 
 def test_of_several_masses_single_ones_have_a_quarter_of_the_false_alarms(set_of):
     """Two balls, 0.02/4 shared by both: two-sided 0.0025 lies beyond 3.02; together 0.015."""
 
     def said(first, second):
-        def ball(z):
-            mass = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9 * (1.0 + z * 0.01)
-            return BALL.replace("4e-3", f"{{ value = {mass}, std = {0.01 * mass} }}") + (
-                "density_kg_m3 = 7800\n"
-            )
-
-        other = f"[strikers.other]\n{ball(second)}"
-        found = set_of(ball(first), more=other, angle_deg=[90], impact_speed_m_s=[1])
+        other = f"[strikers.other]\n{off_by(second)}"
+        found = set_of(off_by(first), more=other, angle_deg=[90], impact_speed_m_s=[1])
         return [f.severity.name for f in check_mass(found)]
 
     assert said(2.95, -2.95)[:2] == ["CONSISTENT", "CONSISTENT"]
@@ -253,28 +239,20 @@ def test_of_several_masses_single_ones_have_a_quarter_of_the_false_alarms(set_of
 
 def test_exact_sizes_are_rounded_to_three_digits(set_of):
     """Nothing has an error: a mass 1 % off is 1/0.3 of an error."""
-    mass = 1.01 * 7800.0 * 4.0 / 3.0 * math.pi * 125e-9
-    found = set_of(
-        BALL.replace("4e-3", str(mass)) + "density_kg_m3 = 7800\n",
-        angle_deg=[90],
-        impact_speed_m_s=[1],
-    )
+    ball = BALL.replace("4e-3", str(1.01 * SOLID)) + DENSE
+    found = set_of(ball, angle_deg=[90], impact_speed_m_s=[1])
     assert check_mass(found)[0].significance == pytest.approx(1.0 / 0.3, rel=1e-9)
 
 
-def test_other_checks_share_one_false_alarm_in_two_hundred(set_of):
+@pytest.mark.parametrize(("z", "said"), [(2.95, "CONSISTENT"), (3.1, "CONTRADICTION")])
+def test_other_checks_share_one_false_alarm_in_two_hundred(set_of, z, said):
     """Half of it goes to the momentum: 0.0025 of chi squared with one degree lies beyond 3.02."""
-
-    def said(z):
-        speed = math.sqrt(2.0 * 9.81 * 0.5) * (1.0 + 0.01 * z)
-        found = set_of(
-            angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[speed],
-            impact_speed_m_s_std=[0.01 * math.sqrt(2.0 * 9.81 * 0.5)],
-        )  # fmt: skip
-        return of_check(check_speed(found), "speed").severity.name
-
-    assert said(2.95) == "CONSISTENT"
-    assert said(3.1) == "CONTRADICTION"
+    fall = math.sqrt(2.0 * 9.81 * 0.5)
+    found = set_of(
+        angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[fall * (1.0 + 0.01 * z)],
+        impact_speed_m_s_std=[0.01 * fall],
+    )  # fmt: skip
+    assert of_check(check_speed(found), "speed").severity.name == said
 
 
 def test_an_angle_that_stays_may_err_by_a_two_hundredth_of_the_approach():
@@ -298,25 +276,14 @@ def test_an_angle_that_stays_may_err_by_a_two_hundredth_of_the_approach():
 def test_friction_is_judged_by_the_angle_two_of_its_deviations_aside(set_of):
     """The steeper rod sticks at less; beyond the larger of both limits only."""
 
-    def limit(std):
+    def limit(angle, std):
         found = set_of(
-            ROD, angle_deg=[60], angle_deg_std=[std], impact_speed_m_s=[1],
+            ROD, angle_deg=[angle], angle_deg_std=[std], impact_speed_m_s=[1],
             friction_impulse_ratio=[0.9], noise="friction_impulse_ratio = 0.01\n",
         )  # fmt: skip
         return of_check(check_friction(found), "friction").expected
 
-    assert limit(1.0) == pytest.approx(
-        of_check(
-            check_friction(
-                set_of(
-                    ROD, angle_deg=[58], angle_deg_std=[1e-9], impact_speed_m_s=[1],
-                    friction_impulse_ratio=[0.9], noise="friction_impulse_ratio = 0.01\n",
-                )
-            ),
-            "friction",
-        ).expected,
-        rel=1e-6,
-    )  # fmt: skip
+    assert limit(60, 1.0) == pytest.approx(limit(58, 1e-9), rel=1e-6)
 
 
 def _traced(set_of, ends, samples=41):
@@ -361,14 +328,8 @@ def test_a_speed_without_an_error_is_known_to_a_fiftieth(set_of):
     ],
 )  # fmt: skip
 def test_a_number_that_no_contact_shows_is_of_another_unit(set_of, column, value, fits):
-    def make():
+    with nullcontext() if fits else pytest.raises(InputError, match=column):
         set_of(angle_deg=[90], impact_speed_m_s=[1], **{column: [value]}, noise=f"{column} = 1\n")
-
-    if fits:
-        make()
-    else:
-        with pytest.raises(InputError, match=column):
-            make()
 
 
 def test_three_trials_of_a_condition_tell_its_scatter():
@@ -403,18 +364,16 @@ def test_conditions_are_one_within_a_degree_2_per_cent_and_half_a_logarithm_of_a
     assert len(set(set_of(ROD, **columns).conditions)) == apart
 
 
-def test_a_restitution_above_one_needs_a_reason_beyond_three_errors_and_a_tenth(set_of):
-    def refused(e, std):
-        try:
-            set_of(
-                angle_deg=[90], impact_speed_m_s=[1], restitution=[e], restitution_std=[std],
-            )  # fmt: skip
-        except InputError as error:
-            return "without a reason" in str(error)
-        return False
-
-    assert [refused(1.09, 0.01), refused(1.11, 0.01)] == [False, True]
-    assert [refused(1.29, 0.1), refused(1.31, 0.1)] == [False, True]
+@pytest.mark.parametrize(
+    ("e", "std", "refused"),
+    [(1.09, 0.01, False), (1.11, 0.01, True), (1.29, 0.1, False), (1.31, 0.1, True)],
+)
+def test_a_restitution_above_one_needs_a_reason_beyond_three_errors_and_a_tenth(
+    set_of, e, std, refused
+):
+    row = {"angle_deg": [90], "impact_speed_m_s": [1], "restitution": [e], "restitution_std": [std]}
+    with pytest.raises(InputError, match="without a reason") if refused else nullcontext():
+        set_of(**row)
 
 
 def test_a_press_leans_by_half_a_degree_at_the_most(set_of):
@@ -436,14 +395,12 @@ def test_a_restitution_above_one_does_not_vouch_for_itself(set_of, rows, refused
     """Its own scatter would be large enough: the rows beside it say how large it is."""
     n = len(rows)
     columns = {"angle_deg": [90] * n, "impact_speed_m_s": [1] * n, "restitution": rows}
+    with pytest.raises(InputError) if refused else nullcontext() as told:
+        set_of(**columns)
     if refused:
-        with pytest.raises(InputError) as told:
-            set_of(**columns)
         lines = str(told.value).splitlines()
         assert [line.split("trial ")[1].split(",")[0] for line in lines] == refused
         set_of(**columns, note=["moved" if f"t{i}" in refused else "" for i in range(n)])
-    else:
-        set_of(**columns)
 
 
 @pytest.mark.parametrize(("wide", "said"), [(0.9, "CONSISTENT"), (1.2, "CONTRADICTION")])

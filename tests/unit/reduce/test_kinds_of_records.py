@@ -69,8 +69,10 @@ def test_the_zero_is_that_just_before_whatever_came_first(tmp_path, level):
         ("Extension,Load\n(mm),(N)", 50.0, 20.0, {"gauge_length_mm": 50.0, "area_mm2": 20.0}),
         ("Strain,Stress\n(%),(MPa)", 100.0, 1.0, {}),
         ("Strain (%),Load (kN)", 100.0, 0.02, {"area_mm2": 20.0}),
+        ("Specimen,steel\nDiameter,6.97,mm\nStrain,Load\n(mm/mm),(kN)", 1.0, 0.0381553,
+         {"time": "Strain", "value": "Load"}),
     ],
-)
+)  # fmt: skip
 def test_tension_in_what_a_machine_writes(tmp_path, names, strain_in, load_in, given):
     strain = np.linspace(0.0, 0.05, 120)
     stress = np.minimum(200e3 * strain, 300.0 * np.maximum(strain / 1.5e-3, 1.0) ** 0.1)  # MPa
@@ -79,6 +81,9 @@ def test_tension_in_what_a_machine_writes(tmp_path, names, strain_in, load_in, g
     found = run(tmp_path / "a.csv", holds="tension", **given).values
     assert found["E_Pa"].value == pytest.approx(200e9, rel=0.03)
     assert found["Sy_Pa"].value == pytest.approx(329e6, rel=0.02)
+    if "area_mm2" in given:
+        with pytest.raises(InputError, match=r"area_mm2: .*holds a load, and the file names no a"):
+            run(tmp_path / "a.csv", holds="tension", **{**given, "area_mm2": None})
 
 
 @pytest.mark.parametrize("bits", [8, 12, 16])

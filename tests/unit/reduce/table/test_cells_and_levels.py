@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.cells import (
     instant,
     since_first,
@@ -241,26 +240,6 @@ def test_a_ringing_moves_peak_and_ends_as_far_as_it_lies_within_the_pulse(tmp_pa
     assert found.values["peak_force_N"].std < (80.0 if rings == "sensor" else 4.0)
     assert found.values["impulse_N_s"].std < 0.01
     assert any("rings" in note for note in found.notes)
-
-
-def test_tension_from_a_load_and_an_area(tmp_path):
-    strain = np.linspace(0.0, 0.05, 120)
-    true = np.minimum(71e9 * strain, 480e6 * np.maximum(strain / 0.00676, 1.0) ** 0.06)
-    rows = [f"{e:.6f},{1e-3 * s * 38.1553e-6:.6f}" for e, s in zip(strain, true, strict=True)]
-    text = "\n".join(["Strain,Load", "(mm/mm),(kN)", *rows])
-    named, bare = tmp_path / "a.csv", tmp_path / "b.csv"
-    named.write_text("Specimen,steel\nDiameter,6.97,mm\n" + text)
-    bare.write_text(text)
-    kind = load_kind("table")
-    given = {"holds": "tension", "time": "Strain", "value": "Load"}
-    for found in (
-        kind.run(named, given, source="test").values,
-        kind.run(bare, {**given, "area_mm2": 38.1553}, source="test").values,
-    ):
-        assert found["E_Pa"].value == pytest.approx(71e9, rel=0.02)
-        assert found["Sy_Pa"].value == pytest.approx(480e6, rel=0.04)
-    with pytest.raises(InputError, match=r"area_mm2: .*holds a load, and the file names no area"):
-        kind.run(bare, given, source="test")
 
 
 @pytest.mark.parametrize(
