@@ -9,7 +9,6 @@ from dentscope.campaigns import DESIGNS, design_named, distinct_cases
 from dentscope.campaigns.cases.drawn import challenge_cases
 from dentscope.campaigns.cases.pairs import RATIOS
 from dentscope.campaigns.parts import opened_part, texts_of
-from dentscope.core import InputError
 
 PUBLISHED = Path(__file__).parents[3] / "data" / "campaign"
 
@@ -87,8 +86,3 @@ def test_a_challenge_follows_from_its_checksum_and_shares_no_pair(cases):
     drawn = {str(c.groups) for c in cases["challenge"].values()}
     assert len(drawn) == 24
     assert not drawn & groups(cases["full"])
-
-
-def test_an_unknown_design_names_the_known_ones():
-    with pytest.raises(InputError, match=", ".join(DESIGNS)):
-        design_named("everything")

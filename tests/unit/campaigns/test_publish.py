@@ -224,14 +224,6 @@ def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
     assert {p.name for p in folder.iterdir()} == {f"other-{k}.h5" for k in range(16)}
 
 
-def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):
-    answer = run(
-        ["campaign", "publish", "--design", "smoke", "--out", str(tmp_path), "--to", str(tmp_path)]
-    )
-    assert answer == 2
-    assert "12 of 12 cases are missing" in capsys.readouterr().err
-
-
 def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(command, "PUBLISHED", folder / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0

@@ -79,11 +79,3 @@ def test_a_wrong_list_is_told(tmp_path, capsys, text, words):
     given = ["reduce", "table", "--list", str(tmp_path / "list.csv"), "--holds", "force"]
     assert run([*given, "--out", str(tmp_path / "out")]) == 2
     assert words in capsys.readouterr().err
-
-
-def test_nothing_to_reduce_is_told(tmp_path, capsys):
-    assert run(["reduce", "table", "--holds", "force"]) == 2
-    assert "--list" in capsys.readouterr().err
-    (tmp_path / "empty").mkdir()
-    assert run(["reduce", "sound", str(tmp_path / "empty")]) == 2
-    assert "no raw file" in capsys.readouterr().err

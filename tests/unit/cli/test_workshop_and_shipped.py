@@ -35,12 +35,6 @@ def test_workshop_commands_elsewhere_are_hidden_and_say_where_to_get_them(monkey
         CliRunner().invoke(app, line, catch_exceptions=False, standalone_mode=False)
 
 
-def test_an_impact_without_a_file_says_what_is_needed(capsys):
-    assert run(["impact"]) == 2
-    told = "command line: SETUP: no file (allowed: a TOML with [target], [strikers.NAME]"
-    assert capsys.readouterr().err.startswith(told)
-
-
 def test_a_shipped_set_is_found_by_name_from_anywhere(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["recordings", "check", "kharaz-2001-oblique"]) == 0

@@ -38,19 +38,6 @@ def test_publishing_outside_a_checkout_is_one_line(monkeypatch, capsys):
         assert len(told.err.splitlines()) == 1
 
 
-@pytest.mark.parametrize("name", ["none.h5", "text.h5", "folder"])
-def test_what_is_no_campaign_is_one_line_and_exit_code_2(tmp_path, capsys, name):
-    path = tmp_path / name
-    if name == "text.h5":
-        path.write_text("no data")
-    elif name == "folder":
-        path.mkdir()
-    assert run(["fit", str(path), "--out", str(tmp_path / "out")]) == 2
-    message = capsys.readouterr().err
-    assert len(message.strip().splitlines()) == 1
-    assert name in message
-
-
 def test_page_shows_the_coefficients_in_use():
     content = read_coefficients()
     text = PAGE.read_text(encoding="utf-8")

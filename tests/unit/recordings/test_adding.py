@@ -73,7 +73,7 @@ APPROACH = "trial,striker,angle_deg,impact_speed_m_s"
         (f"{APPROACH}\nnew,nobody,90,1\n", "no striker 'nobody'"),
         (f"{APPROACH}\n{{first}},{{striker}},90,1\n", "set already"),
         (f"{APPROACH},e\nnew,{{striker}},90,1,.5\n", "column e"),
-        (f"{APPROACH}\nnew,{{striker}},90,-1\n", "row 2"),
+        (f"{APPROACH}\nnew,{{striker}},90,-1\n", "row 2, column impact_speed_m_s: -1 .*above"),
         ("trial,striker,angle_deg\nnew,{striker},90\n", "no approach"),
         (f"{APPROACH}\nnew,{{striker}},90,9\n", "column impact_speed_m_s: 9 m/s beyond the rig"),
         (f"{APPROACH}\nnew,{{striker}},10,1\n", "column angle_deg: 10 degrees beyond the rig"),

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli.recordings import app
-from dentscope.core.errors import InputError
 from dentscope.core.observables import OBSERVABLES
 from dentscope.core.rig import Quantity, StrikerTable, TargetTable
 from dentscope.recordings import (
@@ -43,9 +42,6 @@ def test_template_is_a_set_to_fill_in(tmp_path, option, count):
     assert sum("to fill in" in line for line in lines) == count
     assert "no trial" in lines[-1]
     assert len(lines) == count + 1
-    _, failure = run("new", tmp_path / "set")
-    assert isinstance(failure, InputError)
-    assert "there is one already" in str(failure)
 
 
 def test_audit_prints_contradictions_and_all_checks_on_request():

@@ -90,12 +90,18 @@ CASES = {
         "video", TIMES, ["--frame-rate-hz", "9", "--pixel-m", "1e-4", "--diameter-m", "0.1"],
         "not both",
     ),
-    "tip: text": ("tip", TIMES, ["--pixel-m", "1e-4"], "cannot be read"),
+    "tip: text": ("tip", TIMES, ["--pixel-m", "1e-4"], "cannot be read as a picture"),
+    "tip: two scales": ("tip", TIMES, ["--pixel-m", "1e-5", "--diameter-m", "0.01"], "not both"),
+    "tip: half a crop": ("tip", TIMES, ["--pixel-m", "1e-5", "--crop", "1:2"], "four whole num"),
     "mocap: no length": ("mocap", TRACK, ["--tip-radius-m", "0.01"], "length_m"),
     "mocap: fall without contact": (
         "mocap", TRACK, ["--shape", "sphere", "--tip-radius-m", "0.01"], "a.csv"
     ),
     "scan: three heights": ("scan", "1,2,3\n4,5,6\n7,8,9\n", [], "heights"),
+    "scan: empty": ("scan", "", ["--unit", "um", "--step-m", "1e-6"], "a.csv: empty"),
+    "scan: words": ("scan", "a,b\nc,d\n", ["--unit", "um", "--step-m", "1e-6"], "a.csv: empty"),
+    "scan: ragged": ("scan", "1,2,3\n4,5\n", ["--unit", "um", "--step-m", "1e-6"], "row 2: 2 cel"),
+    "scan: a line": ("scan", "x_m,z_m\n" + "0.1,0.2\n" * 9, [], "belongs into profiles/ of a set"),
     "scan: step of zero": ("scan", "1,2\n3,4\n", ["--unit", "um", "--step-m", "0"], "step-m"),
 }  # fmt: skip
 

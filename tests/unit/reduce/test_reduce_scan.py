@@ -67,25 +67,6 @@ def test_a_scan_of_a_hundred_metres_is_refused():
         reduce(REAL / "nms-1.nms", Options())
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("", "no"),
-        ("a,b\nc,d\n", ""),
-        ("1,2,3\n4,5\n", ""),
-        ("x_m,z_m\n" + "0.1,0.2\n" * 9, "belongs into profiles/ of a set"),
-    ],
-)
-def test_a_file_that_is_no_scan_is_one_line(tmp_path, capsys, text, said):
-    path = tmp_path / "scan.csv"
-    path.write_text(text)
-    assert run(["reduce", "scan", str(path), "--unit", "um", "--step-m", "1e-6"]) == 2
-    message = capsys.readouterr().err.strip()
-    assert "scan.csv" in message
-    assert said in message
-    assert "Traceback" not in message
-
-
 def test_a_level_surface_has_no_crater(tmp_path, capsys):
     path = tmp_path / "flat.csv"
     np.savetxt(path, np.random.default_rng(1).normal(0.0, 0.1, (80, 80)), delimiter=",")

@@ -82,13 +82,6 @@ def test_pictures_without_a_tip_are_a_line(picture, line):
         reduce_tip(picture, scale=Measured(1e-5, 0.0))
 
 
-def test_mistakes_in_files_and_options_are_a_line(tmp_path):
-    (tmp_path / "a.png").write_bytes(b"no picture")
-    with pytest.raises(InputError, match="cannot be read as a picture"):
-        reduce(tmp_path / "a.png", Options())
+def test_a_folder_is_no_picture(tmp_path):
     with pytest.raises(InputError, match="a folder"):
         reduce(tmp_path, Options())
-    with pytest.raises(ValueError, match="four whole numbers"):
-        Options(crop="1:2")
-    with pytest.raises(ValueError, match="not both"):
-        Options(pixel_m=1e-5, diameter_m=0.01)
