@@ -103,13 +103,11 @@ def main():
     parser.add_argument("--child", type=int)
     chosen = parser.parse_args()
     if chosen.child is not None:
-        readers = RAW if chosen.raw else READERS
-        child(chosen.seed, chosen.child, chosen.inputs, readers)
+        child(chosen.seed, chosen.child, chosen.inputs, RAW if chosen.raw else READERS)
         return
-    begun = time.monotonic()
 
     def say(line):
-        sys.stdout.write(f"{time.monotonic() - begun:.0f} s: {line}\n")
+        sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
 
     counts, faults, most, _longest = run(

@@ -18,7 +18,6 @@ from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
 from dentscope.recordings.shipped import FOLDER
-from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
 
 KEYS = """format set seed version audit verdict mechanisms wrong_inputs family
@@ -134,22 +133,6 @@ def test_each_set_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: Any) -> N
     assert found[-1] == Path("build/diagnose/leeb-steel-800hv")
 
 
-def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:
-    case = written(tmp_path, "null", 2)
-    setup = (case / "set.toml").read_text()
-    (case / "set.toml").write_text(setup.replace('shape = "flat"', 'shape = "dome"', 1))
-    table = (case / "trials.csv").read_text().splitlines()
-    first, second = table[1].split(","), table[2].split(",")
-    first[1], second[2] = "nobody", "135"
-    table[1:3] = [",".join(first), ",".join(second)]
-    (case / "trials.csv").write_text("\n".join(table) + "\n")
-    answer = dentscope("diagnose", str(case), "--out", str(tmp_path / "out"), "--quiet")
-    assert answer.returncode == 2
-    assert len(answer.stderr.strip().splitlines()) == 3
-    assert "Traceback" not in answer.stderr
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_second_blow_meets_the_crater_of_the_first(tmp_path, set_of_balls):
     def blows(name: str, *given: tuple[str, float]) -> Problem:
         rows = [f"t{k},ball,90,{v!r},{spot},2e-5" for k, (spot, v) in enumerate(given)]
@@ -215,12 +198,6 @@ def _one_rod(folder: Path, rows: str) -> None:
     folder.mkdir()
     (folder / "set.toml").write_text(ONE_ROD)
     (folder / "trials.csv").write_text(rows)
-
-
-def test_a_set_to_fill_in_is_refused(tmp_path: Path) -> None:
-    write_template(tmp_path / "mine", shape="rod")
-    with pytest.raises(InputError, match=r"target\.E_Pa: to fill in"):
-        diagnose(read(tmp_path / "mine"))
 
 
 def test_one_trial_is_too_little_to_say_anything(tmp_path: Path) -> None:

@@ -43,22 +43,6 @@ def test_a_law_beyond_its_contact_radius_is_objected_to():
     assert "0.41" in objection(LAWS["jackson-green"], need)
 
 
-@pytest.mark.parametrize(
-    ("ratio", "regime"),
-    [(0.59, "flattening"), (0.61, "both bodies"), (1.69, "both bodies"), (1.71, "indentation")],
-)
-def test_one_body_is_said_to_yield_where_the_other_is_two_thirds_stronger(ratio, regime):
-    sphere = Material(E=200e9, nu=0.3, Sy=ratio * 300e6)
-    assert demand(Pair(sphere, SOFT, 1e-2), 1e-4).regime == regime
-
-
-def test_hertz_may_be_used_up_to_19_critical_depths():
-    pair = PAIRS["both bodies"]
-    onset = 1e-4 / demand(pair, 1e-4).w
-    assert objection(LAWS["hertz"], demand(pair, 1.88 * onset)) == ""
-    assert objection(LAWS["hertz"], demand(pair, 1.92 * onset)) == "elastic only"
-
-
 def test_a_flow_curve_that_ends_before_the_strains_under_the_contact_is_told():
     measured = Material(200e9, 0.3, 300e6, flow=Flow(tabulated([0.0, 0.134], [300e6, 400e6])))
     pair = Pair(measured, measured, 1e-2)

@@ -147,7 +147,7 @@ CASES = {
     "too many cells": (trials("0.4,", "0.4,,7"), r"row 3: 7 cells under 6 columns"),
     "trial twice": (trials("b,rod", "a,rod"), r"row 3, column trial: 'a' is also in row 2"),
     "trial empty": (trials("b,rod", ",rod"), r"row 3, column trial: empty"),
-    "trial is a path": (trials("b,rod", "../b,rod"), r"row 3, column trial: '\.\./b'"),
+    "trial is a path": (trials("b,rod", "../b,rod"), r"trial: '\.\./b' .*can name a file"),
     "other striker": (trials("b,rod", "b,ball"), r"row 3, column striker: no striker 'ball' .*rod"),
     # quasi-static presses
     "load beside a speed": (presses("90,1.0,,", "90,1.0,400,"), r"row 2, column load_N: .*a speed"),

@@ -7,7 +7,6 @@ from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import Rig
-from dentscope.recordings.recording_set import read
 from dentscope.reduce.measured import Measured, Trial
 from dentscope.reduce.output.into_set import store
 from dentscope.reduce.output.row import Row
@@ -39,17 +38,6 @@ def test_a_striker_of_a_file_names_no_other_folder(name: str) -> None:
     ball = {"shape": "sphere", "tip_radius_m": 0.01, **steel}
     with pytest.raises(InputError, match="text that can name a file"):
         parse_model({"target": steel, "strikers": {name: ball}}, Rig, source="set.toml")
-
-
-def test_a_trial_of_a_set_names_no_other_folder(tmp_path: Path) -> None:
-    run(["recordings", "new", str(tmp_path / "set")])
-    file = tmp_path / "set" / "trials.csv"
-    head, *_ = file.read_text().splitlines()
-    cells = ["" for _ in head.split(",")]
-    cells[head.split(",").index("trial")] = "../../x"
-    file.write_text(f"{head}\n{','.join(cells)}\n")
-    with pytest.raises(InputError, match=r"trial.*'\.\./\.\./x'.*text that can name a file"):
-        read(tmp_path / "set")
 
 
 def test_trials_without_a_label_keep_a_row_each(tmp_path: Path) -> None:

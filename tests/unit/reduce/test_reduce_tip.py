@@ -82,6 +82,8 @@ def test_pictures_without_a_tip_are_a_line(picture, line):
         reduce_tip(picture, scale=Measured(1e-5, 0.0))
 
 
-def test_a_folder_is_no_picture(tmp_path):
-    with pytest.raises(InputError, match="a folder"):
-        reduce(tmp_path, Options())
+def test_what_is_no_picture_is_a_line(tmp_path):
+    (tmp_path / "a.png").write_bytes(b"no picture")
+    for path, told in ((tmp_path / "a.png", "cannot be read as a picture"), (tmp_path, "a folder")):
+        with pytest.raises(InputError, match=told):
+            reduce(path, Options())
