@@ -8,6 +8,7 @@ import sys
 import time
 import weakref
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -44,12 +45,17 @@ def _lost() -> None:
     assert kept() is None
 
 
+def broken():
+    raise RuntimeError("no compiled object yet")
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_an_interruption_that_a_callback_swallows_comes_again() -> None:
+@pytest.mark.parametrize("then", [partial(time.sleep, 20.0), broken], ids=["lost", "an error"])
+def test_an_interruption_that_a_callback_swallows_comes_again(then):
     def work() -> None:
         with listening():
             _lost()
-            time.sleep(20.0)
+            then()
 
     before = signal.getsignal(signal.SIGINT)
     start = time.monotonic()
@@ -57,17 +63,6 @@ def test_an_interruption_that_a_callback_swallows_comes_again() -> None:
         work()
     assert time.monotonic() - start < 10.0
     assert signal.getsignal(signal.SIGINT) is before
-
-
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_an_interruption_that_a_library_turns_into_an_error_is_one() -> None:
-    def work() -> None:
-        with listening():
-            _lost()
-            raise RuntimeError("no compiled object yet")
-
-    with pytest.raises(Stopped):
-        work()
 
 
 def test_a_mesh_leaves_signals_as_they_were() -> None:

@@ -2,8 +2,6 @@
 
 import os
 import runpy
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +9,7 @@ import pytest
 from dentscope.fitting import fit_tables
 from dentscope.fitting.prediction import predict
 from dentscope.models.closed_form import COEFFICIENTS
+from made_processes import python
 
 _TOOLS = runpy.run_path(str(Path(__file__).with_name("regenerate_fit.py")))
 
@@ -53,9 +52,6 @@ def test_the_fit_is_the_same_to_the_last_bit_whatever_threads_hashes_and_zone():
     found = set()
     for threads, seed, zone in (("1", "0", "UTC"), ("4", "7", "Asia/Tokyo")):
         own = {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads, "TZ": zone}
-        answer = subprocess.run(
-            [sys.executable, "-c", SAME, place], capture_output=True, text=True, check=True,
-            env={**os.environ, **own, "PYTHONHASHSEED": seed},
-        )  # fmt: skip
-        found.add(answer.stdout)
+        environment = {**os.environ, **own, "PYTHONHASHSEED": seed}
+        found.add(python("-c", SAME, place, check=True, env=environment).stdout)
     assert len(found) == 1

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 import warnings
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -15,6 +14,7 @@ from dentscope.campaigns import executor, read_curves
 from dentscope.campaigns.executor import DaskExecutor
 from dentscope.core import InputError
 from dentscope.core.provenance import environment
+from made_processes import python
 
 comm = pytest.importorskip("distributed.comm")
 
@@ -59,14 +59,7 @@ if __name__ == "__main__":
 def test_all_cases_arrive_though_a_worker_is_killed(tmp_path):
     script, path = tmp_path / "cluster.py", tmp_path / "run"
     script.write_text(SCRIPT)
-    answer = subprocess.run(
-        [sys.executable, str(script), str(path)],
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-        cwd=Path(tmp_path),
-    )
+    answer = python(script, path, cwd=tmp_path)
     assert "KILLED 1 DONE 3 0 0" in answer.stdout, answer.stderr
     assert len(read_curves(path)) == 3
 
@@ -86,14 +79,8 @@ def test_the_clusters_of_the_guide_write_their_job_scripts(kind):
 
 
 def test_an_address_without_a_scheduler_ends_with_exit_code_2(tmp_path):
-    answer = subprocess.run(
-        [sys.executable, "-m", "dentscope", "campaign", "run", "--scheduler", "tcp://127.0.0.1:9"],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-        cwd=tmp_path,
-    )
+    command = ("-m", "dentscope", "campaign", "run", "--scheduler", "tcp://127.0.0.1:9")
+    answer = python(*command, cwd=tmp_path)
     assert answer.returncode == 2, answer.stderr
     assert "no dask scheduler at tcp://127.0.0.1:9" in answer.stderr
     assert "Traceback" not in answer.stderr
@@ -176,11 +163,8 @@ class Cluster:
     def connect(self, patience_s=120.0, **changes):
         script = self.folder / "connect.py"
         script.write_text(CONNECT)
-        answer = subprocess.run(
-            [sys.executable, str(script), changes.pop("address", self.address), str(patience_s)],
-            capture_output=True, text=True, timeout=300, check=False,
-            env={**self.environment, **changes},
-        )  # fmt: skip
+        address = changes.pop("address", self.address)
+        answer = python(script, address, patience_s, env={**self.environment, **changes})
         return answer.stdout + answer.stderr
 
     def __enter__(self):

@@ -1,13 +1,11 @@
 """The command line starts without its heavy parts; the environment check names what lacks."""
 
-import subprocess
-import sys
-
 import pytest
 from dentscope.cli import app as assembly
 from dentscope.cli import doctor
 from dentscope.cli.doctor import EnvironmentFinding
 from dentscope.core import Ending, InputError, Outcome
+from made_processes import python
 
 
 def test_help_loads_no_numerics():
@@ -15,10 +13,7 @@ def test_help_loads_no_numerics():
     program = (
         f"import sys, dentscope.cli;print(*[name for name in {heavy!r} if name in sys.modules])"
     )
-    answer = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True
-    )
-    assert answer.stdout.strip() == ""
+    assert python("-c", program, check=True).stdout.strip() == ""
 
 
 @pytest.mark.parametrize(

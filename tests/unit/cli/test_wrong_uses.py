@@ -1,12 +1,11 @@
 """More than a hundred wrong uses: each one line on standard error and exit code 2, no traceback."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from dentscope.cli import run
 from dentscope.core.inputs.templates import CASE, INVERSE, template
+from made_processes import python
 
 
 @pytest.fixture(autouse=True)
@@ -225,11 +224,12 @@ def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixt
 def test_what_is_wrong_is_told_before_the_solver_is_loaded():
     # compiled kernels alone take seconds to load; a process of its own shows what was loaded
     quick = [line for line in USES if line[0] in ("figures", "verify", "proof", "fit")]
+    quick += [["case", "empty.toml"], ["case", "broken.toml"], ["case", "ball.toml"]]
     said = (
         "import sys; from dentscope.cli import run\n"
         f"for line in {quick!r}:\n"
         "    assert run(line) == 2, line\n"
-        "    assert not {'numba', 'scipy'} & set(sys.modules), line\n"
+        "    assert not {'numba', 'scipy', 'dentscope.fem'} & set(sys.modules), line\n"
     )
-    answer = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True)
+    answer = python("-c", said)
     assert answer.returncode == 0, answer.stderr

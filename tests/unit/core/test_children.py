@@ -2,12 +2,11 @@
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import dentscope
 import pytest
+from made_processes import python
 
 ROOT = Path(dentscope.__file__).parent
 TRAPS = ("numpy", "threading", "gmsh", "pyvista", "pickle", "matplotlib", "pandas", "typer", "rich")
@@ -54,11 +53,9 @@ def trapped(tmp_path: Path) -> Path:
     return folder
 
 
-def _run(arguments: list[str], cwd: Path) -> subprocess.CompletedProcess[str]:
+def _run(arguments, cwd):
     env = {k: v for k, v in os.environ.items() if k not in ("PYTHONSAFEPATH", "PYTHONPATH")}
-    return subprocess.run(
-        [sys.executable, *arguments], cwd=cwd, env=env, capture_output=True, text=True, check=False
-    )
+    return python(*arguments, cwd=cwd, env=env)
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -4,12 +4,11 @@ import ast
 import os
 import shutil
 import stat
-import subprocess
-import sys
 from pathlib import Path
 
 from dentscope.core import compiled
 from dentscope.core.compiled import compiled_sources, source_digest
+from made_processes import python
 
 
 def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
@@ -76,11 +75,7 @@ print(float(sum(STRONGE.residual(Pair(ball, flat, 0.01), 3e-4))))
         # as a user's: no other cache, sources as they are
         env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
         env |= {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
-        answer = subprocess.run(
-            [sys.executable, "-c", code], env=env, cwd=tmp_path, capture_output=True, text=True,
-            check=True,
-        )  # fmt: skip
-        return float(answer.stdout)
+        return float(python("-c", code, env=env, cwd=tmp_path, check=True).stdout)
 
     before = residual()
     law = copy / "models" / "published" / "ceb.py"
@@ -96,13 +91,7 @@ def test_numba_is_pointed_there_and_a_choice_of_the_user_is_kept(tmp_path):
     plain = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
 
     def answer(**extra):
-        return subprocess.run(
-            [sys.executable, "-c", code],
-            env=plain | extra,
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.strip()
+        return python("-c", code, env=plain | extra, check=True).stdout.strip()
 
     assert answer(XDG_CACHE_HOME=str(tmp_path)).startswith(str(tmp_path / "dentscope"))
     assert answer(NUMBA_CACHE_DIR="/elsewhere") == "/elsewhere"

@@ -3,8 +3,6 @@
 import csv
 import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
 from dentscope.recordings.shipped import FOLDER
 from dentscope.studies.proof.generators import folder, truth
+from made_processes import python
 
 KEYS = """format set seed version audit verdict mechanisms wrong_inputs family
 alternatives inclusion probabilities scores located parameters nuisance_pulls surprise
@@ -27,13 +26,6 @@ excluded limits improvement misfit correction next_experiment history notes""".s
 
 SOFT = 1
 """Seed of a set whose surface is soft."""
-
-
-def dentscope(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "dentscope", *arguments], capture_output=True, text=True,
-        timeout=300, check=False,
-    )  # fmt: skip
 
 
 def close(one: Any, other: Any) -> bool:
@@ -56,7 +48,7 @@ def written(place: Path, kind: str, seed: int, name: str = "") -> Path:
 def test_one_folder_in_one_command_a_verdict(tmp_path: Path, page_of: Any) -> None:
     case = written(tmp_path, "single", 5, "adhesion")
     out = tmp_path / "out"
-    answer = dentscope("diagnose", str(case), "--out", str(out), "--quiet")
+    answer = python("-m", "dentscope", "diagnose", case, "--out", out, "--quiet")
     assert answer.returncode == 0, answer.stderr
     verdict = json.loads((out / "verdict.json").read_text())
     assert list(verdict) == KEYS

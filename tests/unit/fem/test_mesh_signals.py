@@ -1,7 +1,6 @@
 """What meshing leaves of the process: gmsh alone would end it at a broken pipe."""
 
-import subprocess
-import sys
+from made_processes import python
 
 BROKEN = """
 import os, threading
@@ -28,7 +27,5 @@ except BrokenPipeError:
 
 def test_a_broken_pipe_after_meshing_is_an_error_and_not_the_end():
     for thread in (False, True):
-        answer = subprocess.run(
-            [sys.executable, "-c", BROKEN.format(thread=thread)], capture_output=True, text=True
-        )
+        answer = python("-c", BROKEN.format(thread=thread))
         assert (answer.returncode, answer.stdout) == (0, "told\n"), (thread, answer)

@@ -47,10 +47,10 @@ def body(E, nu, Sy):
 
 def expected(rows, name):
     law = replace(LAWS[name], limits={})
-    answers = []
+    found = []
     for E_s, nu_s, Sy_s, E_f, nu_f, Sy_f, R, d in rows:
         pair = Pair(body(E_s, nu_s, Sy_s), body(E_f, nu_f, Sy_f), R)
-        answers.append(
+        found.append(
             (
                 float(law.loading(pair, d)),
                 float(law.contact_radius(pair, d)),
@@ -59,7 +59,7 @@ def expected(rows, name):
                 float(law.unloading_exponent(pair, d)),
             )
         )
-    return np.array(answers)
+    return np.array(found)
 
 
 @pytest.fixture(scope="module")
@@ -73,8 +73,11 @@ def needs(program):
     return pytest.mark.skipif(shutil.which(program) is None, reason=f"{program} is not installed")
 
 
-def compare(found, rows, *, law="fitted"):
-    want = expected(rows, law)
+ROWS = draws()
+
+
+def compare(found, rows=ROWS, *, law="fitted"):
+    found, want = np.array(found), expected(rows, law)
     depth = np.abs([r[-1] for r in rows])
     for k, name in enumerate(OUTPUTS):
         # a residual depth is what two nearly equal numbers leave: it counts against the approach
@@ -82,23 +85,24 @@ def compare(found, rows, *, law="fitted"):
         assert np.all(np.abs(found[:, k] - want[:, k]) <= 1e-12 * scale), name
 
 
-def written(rows, folder):
+def written(folder):
     path = folder / "rows.txt"
-    text = "\n".join(" ".join(f"{x:.17g}" for x in row) for row in rows)
+    text = "\n".join(" ".join(f"{x:.17g}" for x in row) for row in ROWS)
     path.write_text(text.replace("inf", "Inf") + "\n")
     return path
 
 
-def read_numbers(text):
-    return np.array(
-        [[float(x) for x in line.split()] for line in text.splitlines() if line.strip()]
+def answers(command, folder, **given):
+    """The numbers that a program prints, a line a row."""
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, check=True, timeout=180, **given
     )
+    return [[float(x) for x in line.split()] for line in done.stdout.splitlines() if line.strip()]
 
 
 def test_python(sources):
     contact = runpy.run_path(str(sources / f"{NAME}.py"))["contact"]
-    rows = draws()
-    compare(np.array([contact(*row) for row in rows]), rows)
+    compare([contact(*row) for row in ROWS])
 
 
 @needs("gcc")
@@ -114,9 +118,7 @@ def test_c(sources):
 
     function = getattr(ctypes.CDLL(str(library)), NAME)
     function.restype, function.argtypes = Result, [ctypes.c_double] * 8
-    rows = draws()
-    found = [[getattr(function(*row), name) for name in OUTPUTS] for row in rows]
-    compare(np.array(found), rows)
+    compare([[getattr(function(*row), name) for name in OUTPUTS] for row in ROWS])
 
 
 @needs("gfortran")
@@ -141,34 +143,24 @@ def test_fortran(sources):
         ["gfortran", *flags, f"{NAME}.f90", "main.f90", "-o", "main"],
         cwd=sources, check=True, timeout=120,
     )  # fmt: skip
-    rows = draws()
-    with written(rows, sources).open() as stream:
-        done = subprocess.run(
-            [sources / "main"], stdin=stream, capture_output=True, text=True, check=True, timeout=60
-        )
-    compare(read_numbers(done.stdout), rows)
+    with written(sources).open() as stream:
+        compare(answers([sources / "main"], sources, stdin=stream))
 
 
 @needs("octave")
 def test_octave(sources):
-    rows = draws()
-    written(rows, sources)
+    written(sources)
     columns = ", ".join(f"x(:, {k})" for k in range(1, 9))
     script = (
         f"x = dlmread('rows.txt'); [a, b, c, d, e, f] = {NAME}({columns}); "
         "printf('%.17g %.17g %.17g %.17g %.17g %.17g\\n', [a, b, c, d, e, f]');"
     )
-    done = subprocess.run(
-        ["octave", "--no-gui", "--norc", "--quiet", "--eval", script],
-        cwd=sources, capture_output=True, text=True, check=True, timeout=180,
-    )  # fmt: skip
-    compare(read_numbers(done.stdout), rows)
+    compare(answers(["octave", "--no-gui", "--norc", "--quiet", "--eval", script], sources))
 
 
 @needs("node")
 def test_javascript(sources):
-    rows = draws()
-    written(rows, sources)
+    written(sources)
     (sources / "main.js").write_text(
         f"const law = require('./{NAME}.js');\n"
         "const text = require('fs').readFileSync('rows.txt', 'ascii');\n"
@@ -177,10 +169,7 @@ def test_javascript(sources):
         "  console.log(Object.values(law(...given)).join(' '));\n"
         "}\n"
     )
-    done = subprocess.run(
-        ["node", "main.js"], cwd=sources, capture_output=True, text=True, check=True, timeout=60
-    )
-    compare(read_numbers(done.stdout), rows)
+    compare(answers(["node", "main.js"], sources))
 
 
 def test_modelica(sources):
@@ -197,7 +186,7 @@ def test_modelica(sources):
                 NAME, "exec")
         for part in (first, when_open, last)
     ]  # fmt: skip
-    rows = [row for row in draws() if INF not in (row[0], row[3])]
+    rows = [row for row in ROWS if INF not in (row[0], row[3])]
     found = []
     for row in rows:
         at = {**dict(zip(INPUTS, row, strict=True)), "exp": math.exp, "log": math.log,
@@ -207,14 +196,13 @@ def test_modelica(sources):
         found.append([at[f"out_{name}"] for name in OUTPUTS])
     used = {name for part in code for name in part.co_names} - {"exp", "log", "sqrt", "max"}
     assert used == declared
-    compare(np.array(found), rows)
+    compare(found, rows)
 
 
 def test_the_compact_law_is_written_by_the_same_printer(tmp_path):
     write_sources(LAWS["compact"], tmp_path)
     contact = runpy.run_path(str(tmp_path / f"{NAME}.py"))["contact"]
-    rows = draws()
-    compare(np.array([contact(*row) for row in rows]), rows, law="compact")
+    compare([contact(*row) for row in ROWS], law="compact")
     assert len((tmp_path / f"{NAME}.py").read_text().splitlines()) < 250
 
 
@@ -266,10 +254,7 @@ def test_one_collision_by_the_exported_force_is_ours(sources):
         )  # fmt: skip
         step = ours.contact_time_s / 5000.0
         inputs = (mass, speed, step, ball.E, ball.nu, ball.Sy, flat.E, flat.nu, flat.Sy, R)
-        out = subprocess.run(
-            [program, *map(repr, inputs)], check=True, timeout=60, capture_output=True, text=True
-        ).stdout
-        back, deepest, largest, residual = map(float, out.split())
+        ((back, deepest, largest, residual),) = answers([program, *map(repr, inputs)], sources)
         assert -back / speed == pytest.approx(ours.restitution, rel=1e-3)
         assert deepest == pytest.approx(ours.peak_depth_m, rel=1e-3)
         assert largest == pytest.approx(ours.peak_force_N, rel=1e-3)

@@ -103,12 +103,8 @@ def folder(tmp_path_factory):
 def test_it_compiles_with_the_headers_of_lammps(folder):
     ours = ["-I", str(folder), str(folder / f"{STYLE}.cpp")]
     theirs = [f"-isystem{SOURCE / name}" for name in ("GRANULAR", ".", "STUBS")]
-    done = subprocess.run(
-        ["g++", *FLAGS, "-fsyntax-only", *theirs, *ours],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    command = ["g++", *FLAGS, "-fsyntax-only", *theirs, *ours]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     listed = (folder / f"{STYLE}.h").read_text()
     assert "GranSubModStyle(dentscope,GranSubModNormalDentscope,NORMAL);" in listed
@@ -173,8 +169,7 @@ def test_one_collision_by_it_is_ours(program, flat, radius, mass, speed):
 )
 def test_what_is_no_body_is_refused(program, bodies, said):
     given = [x for b in bodies for x in ((70e9, 0.5, 1e8) if b is None else coefficients(b))]
-    done = subprocess.run(
-        [program, *map(repr, (MASS, 1.0, 1e-9, R, *given))], capture_output=True, text=True
-    )
+    command = [program, *map(repr, (MASS, 1.0, 1e-9, R, *given))]
+    done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 1
     assert said in done.stdout

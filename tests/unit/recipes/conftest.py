@@ -1,11 +1,10 @@
 """Carry out a recipe of CONTRIBUTING.md: its files laid over the checkout's, in a process apart."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from made_processes import python
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -77,10 +76,7 @@ class Recipe:
         target.write_text(text, encoding="utf-8")
 
     def _run(self, *words):
-        return subprocess.run(
-            [sys.executable, "-c", OVERLAY, ROOT, self.over, *words],
-            cwd=self.work, capture_output=True, text=True, timeout=600, check=False,
-        )  # fmt: skip
+        return python("-c", OVERLAY, ROOT, self.over, *words, cwd=self.work, timeout=600)
 
     def dentscope(self, *words):
         answer = self._run("dentscope", *words)

@@ -1,8 +1,6 @@
 """Commands of recording sets, and sets made in memory that survive the way through files."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +19,7 @@ from dentscope.recordings import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from made_processes import python
 from typer.testing import CliRunner
 
 DATA = Path(__file__).parents[3] / "data" / "recordings"
@@ -149,4 +148,4 @@ def test_help_on_a_reduction_loads_nothing_that_reduces():
     listed = "import sys; from dentscope.reduce.kinds import KINDS, load_kind; "
     listed += "import dentscope.reduce.output.row; [load_kind(k) for k in KINDS]; "
     listed += "heavy = {'scipy', 'matplotlib', 'numba', 'skimage'} & set(sys.modules); "
-    subprocess.run([sys.executable, "-c", listed + "assert not heavy, heavy"], check=True)
+    python("-c", listed + "assert not heavy, heavy", check=True)
