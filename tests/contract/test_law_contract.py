@@ -47,7 +47,6 @@ every_pair = pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 
 
 def allowance(law, clause):
-    """Largest declared breach of a clause, as a fraction."""
     return max((size for text, size in law.breaks if text.startswith(clause)), default=0.0) / 100.0
 
 

@@ -51,7 +51,6 @@ def bead() -> Scene:
 
 
 def hollow_ball() -> Scene:
-    """A light ball dropped from 0.46 m: a ping-pong ball's size and mass."""
     striker = Striker(mass=0.0027, tip_radius=0.02)
     return scene_of(LAWS["fitted"], sphere=HARD, flat=MILD, striker=striker, approach=Approach(3.0))
 

@@ -61,7 +61,6 @@ def is_stated(node):
 
 
 def tables_in(path):
-    """Names to which a file gives a table of three or more observables."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     owner = {}
     for statement in ast.walk(tree):

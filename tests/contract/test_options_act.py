@@ -29,7 +29,6 @@ COMMANDS = dict(commands(typer.main.get_command(app)))
 
 @cache
 def read_by_reductions():
-    """Names of attributes that the reductions read: their options are made of tables of fields."""
     folder = Path(inspect.getfile(dentscope.reduce)).parent
     return {
         node.attr

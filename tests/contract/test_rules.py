@@ -145,7 +145,6 @@ def is_limit(node: ast.stmt, lines: list[str]) -> bool:
 
 
 def constants(path: Path) -> list[str]:
-    """Names that a module gives numbers to, but for those of limits."""
     found = []
     text = path.read_text(encoding="utf-8")
     for node in ast.parse(text).body:

@@ -165,7 +165,6 @@ def typed(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 
 def compiled(module: ast.Module) -> set[str]:
-    """Names of the functions that numba compiles: decorated, or handed to a decorator."""
     makers = {"njit", "register_jitable", "vectorize", "guvectorize", "overload", "cfunc"}
     makers |= {"kernel", "loading_kernel", "branch_kernel", "residual_kernel"}
 

@@ -30,8 +30,6 @@ _SECTOR = 512
 
 
 class Faulty:
-    """The real disk, one of whose calls fails."""
-
     def __init__(self, at, code):
         self.at, self.code, self.calls, self.hit = at, code, 0, ""
 
@@ -51,8 +49,6 @@ class Faulty:
 
 @dataclass
 class File:
-    """Contents: what a loss of power leaves for certain, and what the system shows."""
-
     safe: bytes
     shown: bytes
 

@@ -26,7 +26,6 @@ laws = ["fitted"]
 
 
 def setup(given):
-    """The set-up of a file's text, or of its tables."""
     content = tomllib.loads(given) if isinstance(given, str) else given
     return setup_of(content, source="ball.toml")
 

@@ -34,5 +34,4 @@ def table(path, cells, head="time_s,force_N", times=None):
 
 
 def recorded(path, value):
-    """A table of numbers, three digits after the point."""
     return table(path, [f"{v:.3f}" for v in value])

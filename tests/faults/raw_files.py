@@ -32,7 +32,6 @@ def _pulse():
 
 
 def _bouncing():
-    """Instants and heights of a ball that bounces [s, m]."""
     t = np.arange(0.0, 1.3, 0.005)
     z, start, speed = 0.5 - 4.9 * t**2, 0.319, 3.13 * 0.8
     while start < 1.3:
@@ -62,7 +61,6 @@ def _markers(end):
 
 
 def _frames():
-    """A ball that falls and rises again, 16 frames of 60 x 48."""
     y, x = np.mgrid[:60, :48]
     rows = 50.0 - 10.0 - np.abs(np.arange(16) - 7.4) * 3.0
     discs = [np.clip(10.5 - np.hypot(x - 24.2, y - row), 0.0, 1.0) for row in rows]
@@ -182,7 +180,6 @@ def _book():
 
 
 def _pressed():
-    """Load against depth: an approach, a loading, an unloading."""
     rng = np.random.default_rng(4)
     load = np.concatenate([np.zeros(40), np.linspace(0.0, 800.0, 150), np.linspace(800.0, 0.0, 90)])
     back = 9.0 * (1.0 - (load[190:] / 800.0) ** 0.7)
@@ -300,7 +297,6 @@ def lay_out(name, content, folder):
 
 
 def read(name, path):
-    """Reduce a raw file of `FILES` to numbers, a record and a picture."""
     from dentscope.reduce.kinds import load_kind
     from dentscope.reduce.output.record import write_record
 

@@ -62,7 +62,6 @@ def setup_for(bodies: str, support: str, angle: float, laws: tuple[str, ...] = D
 
 
 def assert_swept(bodies: str, support: str, angle: float) -> None:
-    """Every law's sweep ends, and where it completed every number is one."""
     setup = setup_for(bodies, support, angle)
     for name in setup.laws:
         found = setup.swept(LAWS[name])

@@ -48,7 +48,6 @@ KINDS = {
 
 
 def problem(folder, rig):
-    """Readings need not be right here: what is asked is what is simulated."""
     rows = [f"{k},ball,90,{v},0.5,1e-5,{0.5 * v}\n" for k, v in enumerate(SPEEDS)]
     (folder / "set.toml").write_text(f'format = "recording-set/1"\n{rig}{NOISE}')
     (folder / "trials.csv").write_text(HEAD + "".join(rows))

@@ -63,7 +63,6 @@ def survey():
 
 
 def played(cases, costs, *, workers):
-    """Let workers take the cases in order; give the ends in their order, and the whole time."""
     free, ended = [0.0] * workers, []
     for case, cost in zip(cases, costs, strict=True):
         k = int(np.argmin(free))

@@ -34,8 +34,6 @@ class Toy(type(MECHANISMS[0])):
 
 @pytest.fixture
 def packages(monkeypatch):
-    """An environment in which other packages add to each group."""
-
     def install(**points):
         found = EntryPoints(
             EntryPoint(name, value, f"dentscope.{group}") for group, (name, value) in points.items()

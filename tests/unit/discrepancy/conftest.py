@@ -210,8 +210,6 @@ _EMPTY = {"meta", "path", "use", "rect", "input", "br"}
 
 
 class Page(HTMLParser):
-    """A page as a person sees it: text outside what is folded, attributes, nesting."""
-
     def __init__(self, text: str) -> None:
         super().__init__()
         self.open: list[str] = []

@@ -42,7 +42,6 @@ def solved() -> PairTable:
 
 
 def set_of(folder, table, *, curves, stated=1.0, fastest=20.0):
-    """Write what balls of 5 mm record on this metal, without noise."""
     pair, R = table.pair, 5e-3
     mass = 4.0 / 3.0 * math.pi * R**3 * 7800.0
     ball = Striker(mass=mass, tip_radius=R, length=0.0, radius=R, inertia=0.4 * mass * R**2)

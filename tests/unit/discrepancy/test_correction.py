@@ -22,7 +22,6 @@ ERROR = LawError(
 
 
 def corrected(toy, data, noise):
-    """A law that is 2 % unsure of its force at every depth, and its force measured once."""
     J = [[KNOWN]]
     given = toy.problem(data, derivative=J, error=ERROR)
     base = replace(toy.fit_of(data, J=J), linear=Linear(noise**2 * np.eye(1), np.array(J)))

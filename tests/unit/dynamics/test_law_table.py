@@ -29,7 +29,6 @@ def quiet(answer, *given):
 
 
 def recovers_by_a_power(law, pair):
-    """Whether the force falls with one power of the way back, whatever the law says of itself."""
     way, apart = np.array([0.25, 0.5, 0.75]), []
     for peak in pair.R * np.array([1e-3, 1e-2, 1e-1]):
         left = float(np.sum(quiet(law.residual, pair, peak)))

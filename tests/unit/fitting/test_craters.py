@@ -11,7 +11,6 @@ from dentscope.models import LAWS
 
 
 def judged(every, *, by_law=False):
-    """Yield of published craters the pair, the body, and how far each is missed over its depth."""
     for number, pair, left, heights in craters._read()[::every]:
         whole, told = left.sphere + left.flat, left
         if whole < 0.1 * left.depth:

@@ -19,7 +19,6 @@ INF = math.inf
 
 
 def draws():
-    """Materials and depths over and beyond the domain, with rigid and elastic bodies."""
     u = np.random.default_rng(4).random((60, 8))
     rows = [
         (

@@ -25,7 +25,6 @@ def pair_of(E_s, E_f, Sy_min, ratio, nu_s=0.3, nu_f=0.3):
 
 
 def random_pairs(count, seed):
-    """Pairs over the whole range that the form is meant for."""
     u = np.random.default_rng(seed).random((count, 6))
     return [
         pair_of(
@@ -38,7 +37,6 @@ def random_pairs(count, seed):
 
 @pytest.fixture(scope="module", params=["compact", "fitted"])
 def law(request):
-    """A shipped law without its domain, which these draws leave on purpose."""
     return replace(LAWS[request.param], limits={})
 
 

@@ -110,8 +110,6 @@ def rows_of(**off):
 
 @pytest.fixture
 def misfit(monkeypatch):
-    """Misfits of a prediction in their units: loading (3, n), unloading (4, n)."""
-
     def of(back=1.0, **off):
         table, turns, seen = rows_of(**off)
         monkeypatch.setattr(correcting, "moved", lambda numbers, shifts: None)
@@ -172,8 +170,6 @@ def test_a_shift_costs_twice_its_square_over_two_and_moves_by_one_and_a_half_at_
 
 def test_a_regression_ends_when_a_step_brings_two_thousandths() -> None:
     class Slow(Parabola):
-        """A cost that falls by a part of itself at every step."""
-
         def __init__(self, part):
             super().__init__(np.full((1, len(CHANNELS)), 1e9))
             self.part = part
@@ -299,7 +295,6 @@ def test_a_law_of_a_solve_needs_three_unloadings() -> None:
 
 
 def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares(monkeypatch):
-    """Three hundredths of the exponent and a fiftieth of the energy given back."""
     one = np.ones(1)
     table = SimpleNamespace(edge_seen=one > 0.0, force=one, radius=one, share=0.5 * one)
     turns = SimpleNamespace(exponent=1.5 * one, total=0.5 * one, sphere_part=0.4 * one)

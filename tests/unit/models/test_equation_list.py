@@ -21,7 +21,6 @@ def rows():
 
 
 def numbers(text):
-    """Chapter and number of every equation named, ranges written out."""
     for chapter, first, last in NUMBER.findall(text):
         yield from ((int(chapter), n) for n in range(int(first), int(last or first) + 1))
 

@@ -50,8 +50,6 @@ main()
 
 
 class Recipe:
-    """A recipe of CONTRIBUTING.md, carried out step by step with a toy."""
-
     def __init__(self, title, folder):
         self.words = RECIPES[title].replace("NAME", "toy")
         self.over, self.work = folder / "over", folder / "work"

@@ -33,8 +33,6 @@ ROD = f'shape = "rod"\ntip_radius_m = 5e-3\nradius_m = 5e-3\nlength_m = 0.3\nmas
 
 @pytest.fixture
 def set_of(tmp_path):
-    """A set of one striker, `body`, on a flat of 350 MPa; its rows as columns."""
-
     def make(striker=BALL, *, target="Sy_Pa = 3.5e8\n", noise="", more="", trace=None, **columns):
         setup = (
             f'format = "recording-set/1"\nname = "a"\n[target]\n{STEEL}{target}'
@@ -187,7 +185,6 @@ def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
 
 
 def _pulse(set_of, ratio):
-    """A ball of 4 g at 1 m/s that stays; force times duration is what of its momentum is said."""
     found = set_of(
         angle_deg=[90], impact_speed_m_s=[1], impact_speed_m_s_std=[1e-6], restitution=[1e-9],
         peak_force_N=[4e-3 / ratio / 1e-4], contact_time_s=[1e-4],

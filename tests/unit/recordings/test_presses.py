@@ -36,7 +36,6 @@ PRESSURE, MODULUS = 1.0e9, 2.0e11 / 0.91 / 2.0
 
 
 def press(name, load, *, diameter=1.0, recovered=1.0):
-    """A row of a press at Tabor's pressure; factors on what it shows."""
     a = math.sqrt(load / (math.pi * PRESSURE))
     back = 0.75 * load / (MODULUS * a)
     cells = (diameter * 2.0 * a, recovered * back)

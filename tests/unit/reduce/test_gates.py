@@ -94,7 +94,6 @@ def test_a_soft_contact_is_no_flight(tmp_path, contact, rate):
     ids=["walks", "squats", "runs", "rides"],
 )
 def test_who_walks_does_not_fall(tmp_path, forwards, steps, lift):
-    """Places on a body that swings its limbs: no flight, or no rigid body; no number."""
     rng = np.random.default_rng(7)
     time = np.arange(0.0, 2.5, 0.01)
     names = [f"m{k}_{a}_mm" for k in range(5) for a in "xyz"]
@@ -123,7 +122,6 @@ def test_what_a_restitution_is(e, std, known):
 
 @pytest.mark.parametrize("seed", [2, 5, 8])
 def test_what_is_let_down_in_steps_does_not_bounce(tmp_path, seed):
-    """Held between: what it seems to give back is as unsure as it is large."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 3.0, 1.0 / 230.0)
     held = 1.0 - 0.1 * np.floor(2.7 * t) + 3e-3 * np.sin(8.0 * t) + 2e-3 * rng.normal(size=t.size)

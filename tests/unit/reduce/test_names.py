@@ -41,7 +41,6 @@ def test_a_striker_of_a_file_names_no_other_folder(name: str) -> None:
 
 
 def test_trials_without_a_label_keep_a_row_each(tmp_path: Path) -> None:
-    """A reader of another package need not label what it reads."""
     run(["recordings", "new", str(tmp_path / "set")])
     blows = [Trial({"restitution": Measured(e, 0.01)}) for e in (0.8, 0.7)]
     (tmp_path / "gates.txt").write_text("1.0 0.8\n1.0 0.7\n")

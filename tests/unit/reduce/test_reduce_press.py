@@ -40,7 +40,6 @@ def _back(peak, load):
 
 
 def text(rows, head="time_s,depth_um,load_N\n", sizes=(1.0, 1e6, 1.0), between=",", comma="."):
-    """Return a record as a machine writes it."""
     lines = (
         between.join(f"{s * v:.7g}" for s, v in zip(sizes, row, strict=True)) for row in rows.T
     )

@@ -11,7 +11,6 @@ TIME = np.arange(0.0, 0.02, 1.0 / RATE)
 
 
 def pulse(*, at=0.01, long=1e-3, peak=800.0):
-    """Half a sine to the power 3/2, as of an elastic contact."""
     phase = (TIME - at) / long
     return peak * np.sin(np.pi * np.clip(phase, 0.0, 1.0)) ** 1.5
 

@@ -11,7 +11,6 @@ POINTS = np.array([[0.11, 0.03, 0.0], [-0.1, 0.05, 0.02], [0.0, -0.06, 0.1], [0.
 
 
 def flight(rate, seed=5):
-    """Times, and the height of the ball's centre above where it touches."""
     fall = np.sqrt(2.0 * HEIGHT / G)
     t = np.arange(0.0, 1.9 * fall, 1.0 / rate)
     after = t - fall

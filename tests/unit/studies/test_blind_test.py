@@ -1,7 +1,5 @@
 """A blind test by others: sealed, answered by the diagnosis as the page says, opened, scored."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

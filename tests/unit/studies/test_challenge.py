@@ -86,7 +86,6 @@ def test_a_strangers_method_is_scored_by_the_pages_instructions(
 
 
 def told_in(printed: str) -> list[str]:
-    """Cells of the page's table of what `score` printed."""
     found = {}
     for line in printed.splitlines():
         if match := re.match(r"(\D+?) +(-?[\d.]+) +(-?[\d.]+) to (-?[\d.]+)", line):

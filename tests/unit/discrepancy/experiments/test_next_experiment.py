@@ -167,8 +167,6 @@ def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None
 
 
 class Seen:
-    """A simulator in which one mechanism adds 2 to what is seen at high speeds only."""
-
     def __init__(self, problem):
         self.problem = problem
 

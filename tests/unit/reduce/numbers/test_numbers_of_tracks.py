@@ -55,7 +55,6 @@ def test_a_run_is_longer_than_chance_makes_it(off, run) -> None:
 
 
 def bounced(factor, jitter=0.0, **given):
-    """What is said of twelve instants, flights of `factor` of the one before."""
     flights = factor ** np.arange(11) + jitter * np.resize([1.0, -1.0], 11)
     times = np.append(0.0, np.cumsum(flights))
     return reduce_bounce_times(
@@ -133,7 +132,6 @@ STAGE = Stage(0.0, 50.0, 0.0, 0.4)
 
 
 def thrown(n=41, fall=9810.0):
-    """A parabola that is 0 at both ends, and its flight."""
     time = np.linspace(0.0, 0.4, n)
     track = Track(time, 0.5 * fall * time * (0.4 - time))
     return track, Piece(np.arange(n), 0.2, Launch(float(track.height[n // 2]), 0.0), 1.0)
@@ -291,7 +289,6 @@ def test_contacts_of_a_track_last_within_three_tenths_of_each_other() -> None:
 
 
 def likely(monkeypatch, track, both, ratio=1.0) -> np.ndarray:
-    """Likelihoods where the flat holds no sample; speeds of 1 to both sides."""
     monkeypatch.setattr(touch, "_both_held", lambda *_: [np.array([], int)] * 2)
     met = np.array([0.0, 1.0, 1.0, ratio, 0.0])
     return likely_durations(track, STAGE, NO_FALL, both, met)

@@ -218,7 +218,6 @@ LAYOUTS = (one_row, numbered, three_rows, balls, pulses)
 
 
 def judged(made):
-    """`right`, what was told instead, or what is wrong in silence, in words."""
     path, truth, notes, noise, ball = made
     try:
         sheet = read_sheet(path)

@@ -293,7 +293,6 @@ def test_metals_are_as_far_off_as_was_drawn(law):
 
 
 def places_of_dents(change):
-    """Where a change of all dents, a function of the logarithm of their speeds, is placed."""
     rig = benches.balls_normal(np.random.default_rng(2))
     seen = simulate.Visibility.of(rig, family=at.CAVITY, z={})
     n = len(seen.rig)
