@@ -92,12 +92,17 @@ class Transfer:
 
 
 def moved_outwards(grid: Discretisation, values: Array, factor: float) -> Array:
-    """Nodal values (2 n_nodes,) taken away from the pole; the innermost block keeps its own."""
+    """Nodal values (2 n_nodes,) taken away from the pole.
+
+    What is held, and the innermost block, keep their own.
+    """
     moved = values.reshape(-1, 2).copy()
     for layers in grid.layers:
         level = layers.level
         moved[layers.nodes] = _linear(level, moved[layers.nodes], level / factor)
-    return moved.reshape(-1)
+    moved = moved.reshape(-1)
+    moved[grid.held] = values[grid.held]
+    return moved
 
 
 def _lines_of_points(layers: Layers, place: Integers) -> Integers:
