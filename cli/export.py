@@ -84,6 +84,7 @@ def export_dem(
 def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
     """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
+    from ..dynamics.told.band import too_deep
     from ..dynamics.told.discrete_elements import HEAD, substitutes, table
     from ..dynamics.told.lammps import lammps_lines
     from ..models import law_named
@@ -93,6 +94,8 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
     shown, between = new_console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
+    if deep := too_deep(chosen, ball.pair, [row.law.depth for row in rows]):
+        say(deep)
     for row in rows:
         for name in row.left_out:
             say(row.without(name))

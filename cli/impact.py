@@ -104,7 +104,7 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
-    from ..dynamics.told.band import MOST_SWEPT, swept_stds
+    from ..dynamics.told.band import MOST_SWEPT, swept_stds, too_deep
     from ..dynamics.told.checks import swept_above_one, swept_walls
     from ..dynamics.told.draw import draw_sweep, swept_in_vain
 
@@ -114,7 +114,9 @@ def _sweep(
     for other in others:
         first = first.joined(other)
     first = first.with_stds(stds)
-    told = [*swept_above_one(first), *swept_walls(setup.scene(laws[0]), first)]
+    scene, depths = setup.scene(laws[0]), curves[laws[0].name]["peak_depth_m"]
+    deep = too_deep(laws[0], scene.pair, depths)
+    told = [*([deep] if deep else []), *swept_above_one(first), *swept_walls(scene, first)]
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
     written = [table]

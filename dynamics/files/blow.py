@@ -107,7 +107,7 @@ class Blow:
             law.name
             for law in self.laws
             if self[law.name].outcome.completed
-            and compared(law, self.setup.scene(law), self[law.name].peak_depth_m)
+            and compared(law, self.setup.scene(law).pair, self[law.name].peak_depth_m)
         )
 
     def rules(self) -> list[str]:

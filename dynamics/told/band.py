@@ -19,6 +19,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
+from ...core.material import Pair
 from ...core.rig import BodyTable, Quantity
 from ...models import law_named
 from ...models.base import ContactLaw
@@ -139,12 +140,23 @@ def vague(setup: Setup) -> Iterator[tuple[str, float]]:
             yield ".".join(path), quantity.relative
 
 
-def compared(law: ContactLaw, scene: Scene, depth: float) -> bool:
+def compared(law: ContactLaw, pair: Pair, depth: float) -> bool:
     """Whether the law's error is known at this depth: where a law states no reach, the fitted's."""
-    need = demand(scene.pair, depth)
+    need = demand(pair, depth)
     own = law.domain.a_over_R_max
     reach = own if math.isfinite(own) else law_named("fitted").domain.a_over_R_max
     return need.regime == "elastic" or need.a_over_R <= reach
+
+
+def too_deep(law: ContactLaw, pair: Pair, depths: Sequence[float] | Array) -> str:
+    """Say how many of several blows, by their depths (n,) [m], go beyond; empty: none."""
+    far = [d for d in depths if math.isfinite(d) and not compared(law, pair, d)]
+    if not far:
+        return ""
+    return (
+        f"{law.name}: {len(far)} of {len(depths)} impacts go so deep, to {max(far) / pair.R:.2g} "
+        "R, that no law was compared with finite elements there"
+    )
 
 
 def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impact:
@@ -339,7 +351,7 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
                 by = (s * slope[name][row] for s, slope in zip(part, slopes, strict=False))
                 variance[name][row] += sum(x * x for x in by)
             variance[_CRATER][row] += _parted(part, values[_CRATER], values["peak_depth_m"]) ** 2
-        if not compared(law, scene, values["peak_depth_m"]):
+        if not compared(law, scene.pair, values["peak_depth_m"]):
             for name in SWEPT:
                 variance[name][row] = math.nan
     return {name: np.sqrt(x) for name, x in variance.items()}

@@ -82,10 +82,11 @@ def test_what_a_sweep_leaves_as_it_is_is_told(tmp_path, capsys):
     file = tmp_path / "ball.toml"
     assert run(["impact", "--new", "ball", str(file)]) == 0
     text = file.read_text().replace("[impact]", "[impact]\nrepeats = 2")
-    sweep = "[sweep]\nfriction = [0.1, 0.2]\nmass_kg = [1e-3, 2e-3]\n"
+    sweep = "[sweep]\nfriction = [0.1, 0.2]\nmass_kg = [1e-3, 1e3]\n"
     file.write_text(text[: text.index("[sweep]")] + sweep)
     assert run(["impact", str(file), "--law", "hertz", "--exact", "--out", str(tmp_path)]) == 0
     told = capsys.readouterr().out
+    assert "hertz: 2 of 4 impacts go so deep, to" in told
     assert "sweep.friction changes nothing here" in told
     assert "sweep.mass_kg" not in told
     assert "of first blows: impact.repeats = 2 acts above alone" in told

@@ -87,6 +87,8 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
     assert by_speed[0] > by_speed[1]
     lines = (out / "lammps.in").read_text()
     assert len(laws_of(lines, "flat")) == len(laws_of(lines, "balls")) == 2
+    assert run(["export", "dem", str(file), "--speed", "0.5,2e3", "--out", str(out)]) == 0
+    assert "fitted: 1 of 2 impacts go so deep, to" in " ".join(capsys.readouterr().out.split())
     for line in (["--speed", "10:1"], ["--speed", "1e5"], ["--mass", "-1"], ["--mass", "nan"]):
         assert run(["export", "dem", str(file), *line]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1

@@ -171,6 +171,7 @@ def test_friction_on_a_ball_changes_the_spin_alone():
     assert effect(found["fitted"], replace(found["fitted"], restitution=1e3)).endswith("-100 %")
     stays = replace(found["fitted"], restitution=0.0)
     assert effect(found["fitted"], stays).endswith("in place of 0")
+    assert effect(stays, stays).endswith("restitution 0 either way")
 
 
 def test_a_free_support_yields_later(brass):
