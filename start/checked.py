@@ -54,7 +54,7 @@ class CheckedMaterial(Body, metaclass=_Checked):
         shape (n, 2), the name of a CSV file with columns plastic_strain and stress_Pa, or a
         `core.flow.Flow`.
     rigid
-        Does not deform at all; `E`, `nu` and `Sy` are then ignored.
+        Does not deform at all; `E`, `nu` and `Sy` are then left out, or ignored.
     name
         Text for tables and pictures.
 
@@ -78,13 +78,14 @@ class CheckedMaterial(Body, metaclass=_Checked):
     if TYPE_CHECKING:  # a type checker asks for both
 
         def __init__(
-            self, E: float, nu: float, Sy: float = ..., density: float = ..., *,
+            self, E: float = ..., nu: float = ..., Sy: float = ..., density: float = ..., *,
             flow: FlowLike | None = ..., rigid: bool = ..., name: str = ...,
         ) -> None: ...  # fmt: skip
 
     def __new__(
-        cls, E: float, nu: float, Sy: float = math.inf, density: float = math.nan, *,
-        flow: FlowLike | None = None, rigid: bool = False, name: str = "",
+        cls, E: float = math.nan, nu: float = math.nan, Sy: float = math.inf,
+        density: float = math.nan, *, flow: FlowLike | None = None, rigid: bool = False,
+        name: str = "",
     ) -> Self:  # fmt: skip
         """Return a `core.Material`."""
         flows = None if flow is None else _flow_of(flow)
