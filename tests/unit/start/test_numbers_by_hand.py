@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
+from dentscope.core.errors import Ending, Outcome
 from dentscope.core.flow import Flow, tabulated
 from dentscope.core.tables import thinned
 from dentscope.models import LAWS
@@ -95,8 +96,10 @@ def test_a_solve_beyond_a_flow_curve_is_told() -> None:
     short = Material(2e11, 0.3, 4e8, flow=Flow(tabulated([0.0, 0.1], [4e8, 5e8])))
     last = SimpleNamespace(plastic_strain=np.array([0.2, 0.0, 0.3]), n_sphere_quads=1)
     problem = SimpleNamespace(pair=Pair(HARD, short, 1e-3))
-    solution = SimpleNamespace(problem=problem, snapshots=(last,))
+    back = SimpleNamespace(outcome=Outcome(Ending.NOT_CONVERGED, "unloading stopped.", ""))
+    solution = SimpleNamespace(problem=problem, snapshots=(last,), unloadings=(back,))
     assert "a strain of 0.1, the contact reaches about 0.3:" in Solved(solution, None).remark
+    assert "unloading stopped." in Solved(solution, None).remark
 
 
 @pytest.mark.parametrize("count", [0, 1, 5, 13, 23, 25, 61])
