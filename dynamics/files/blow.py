@@ -118,7 +118,12 @@ class Blow:
         band = self.bands[first]
         (found,) = _shown([self[first]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
+        lost = [part for part, changes in band.parts.items() if "restitution" not in changes]
         return [
+            *(
+                f"the standard deviations are without the part of {part}: a blow for it did not end"
+                for part in lost
+            ),
             *(
                 f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
                 f"{band.rules(name)} of the variance"
@@ -265,6 +270,8 @@ def _shown(impacts: Sequence[Impact]) -> list[dict[str, float]]:
     """What is shown of each; 0 for what rounding alone has left and a dent below an atom."""
     columns = [{key: float(getattr(one, key)) for _, key, _, _ in SHOWN} for one in impacts]
     largest = {"mJ": max((one.kinetic_before_J for one in impacts), default=0.0)}
+    # a spin beside the rebound over a metre
+    largest["rad/s"] = max((abs(one.rebound_speed_m_s) for one in impacts), default=0.0)
     for _, key, _, unit in SHOWN if columns else ():
         largest[unit] = max([largest.get(unit, 0.0), *(abs(values[key]) for values in columns)])
 
@@ -280,9 +287,10 @@ def _reach(key: str, found: Impact) -> tuple[float, float]:
 
     No restitution rises above 1, nor the rebound above the approach, as far as they have not.
     """
-    if key.startswith(("tangential", "rebound_spin")):
-        return math.inf, math.inf
     value = float(getattr(found, key, math.inf))
+    # a leaning rod's centre may go on downwards as its tip comes back
+    if key.startswith(("tangential", "rebound_spin")) or value < 0.0:
+        return math.inf, math.inf
     most = math.inf
     if key.endswith("restitution"):
         most = 1.0

@@ -210,7 +210,7 @@ def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
         )
         yield f"without friction: {effect(without, found)}"
-    elif not straight:
+    elif not straight and setup.file.friction.coefficient is None:
         yield "friction.coefficient is not stated: nothing acts along the flat"
 
 

@@ -493,6 +493,28 @@ def test_a_body_without_a_strength_is_said_to_stay_elastic(body, words):
     assert "stays elastic" not in stated
 
 
+def test_a_rod_that_stands_has_no_spin_and_one_that_leans_a_band_of_its_rebound():
+    content = tomllib.loads(template("rod")) | {"sweep": {}, "friction": {"coefficient": 0.0}}
+    blows = []
+    for angle in (90, 45):
+        content["impact"] |= {"angle_deg": angle}
+        blows.append(blow_of(setup_of(content, source="rod.toml"), [LAWS["fitted"]]))
+    upright, leaning = (dict(one.table()) for one in blows)
+    assert not any(name.startswith("spin") for name in upright)
+    told = leaning["rebound speed [m/s]"]
+    assert told.startswith("-")
+    assert "+0" not in told.split()
+    assert not any("is not stated: nothing acts" in line for line in blows[1].checks())
+
+
+def test_bands_whose_blows_did_not_end_are_told():
+    # a rod as short as it is thick, whose vibrations take more steps than a band is given
+    content = tomllib.loads(template("rod")) | {"sweep": {}}
+    content["strikers"]["rod"]["length_m"] = 1e-3
+    found = blow_of(setup_of(content, source="rod.toml"), [LAWS["fitted"]])
+    assert "without the part of metal: a blow for it did not end" in "\n".join(found.rules())
+
+
 def test_a_deviation_that_changes_nothing_is_told_where_it_is_stated():
     _, lines = told({"target": {"density_kg_m3": {"value": 8500.0, "std": 85.0}}})
     assert "of target.density_kg_m3, 0.01 of it, changes nothing here" in lines
