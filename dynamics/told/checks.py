@@ -101,7 +101,9 @@ def checks(
 
 
 def _resting(scene: Scene, found: Impact) -> Iterator[str]:
-    if found.contact_time_s > 0.0:
+    if math.isfinite(scene.support.mass) and found.tip_rebound_m_s <= 0.0:
+        yield "no rebound: what is struck is no heavier, and takes the speed along"
+    elif found.contact_time_s > 0.0:
         yield "no rebound: what is taken after the contact leaves nothing of it"
     elif not found.peak_depth_m > 0.0:
         yield "no touch: the film takes the whole approach (below the critical Stokes number)"

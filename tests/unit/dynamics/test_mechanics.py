@@ -257,6 +257,14 @@ def test_the_metals_inertia_is_told_of(speed, said):
     assert any("more than the radius" in line for line in blow.checks()) is said
 
 
+def test_a_ball_that_a_free_block_of_its_mass_stops_has_given_it_its_speed():
+    free = {**STEEL, "support_mass_kg": 4.0841e-3, "support_stiffness_N_m": 0.0}
+    found, blow = struck(target=free, ball={**STEEL, "mass_kg": 4.0841e-3},
+                         impact={"support": "sprung"}, gravity_m_s2=9.81)  # fmt: skip
+    assert found.restitution == pytest.approx(0.0, abs=1e-3)
+    assert any("takes the speed along" in line for line in blow.checks())
+
+
 def test_the_smaller_of_two_spheres_is_the_one_that_is_gone_through():
     """A grain of 1 um that a ball of 5 mm flattens by 1.7 um; of equal balls the striker stops."""
     grain = {**STEEL, "Sy_Pa": 3e8, "shape": "sphere", "radius_m": 1e-6, "mass_kg": 1e-9}
