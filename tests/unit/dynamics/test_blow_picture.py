@@ -58,6 +58,7 @@ def test_a_law_by_which_the_blow_did_not_end_is_no_result():
     assert found.table() == [("restitution", "unfinished", "unfinished"),
                              ("largest mean pressure [MPa]", "", "")]  # fmt: skip
     assert found.checks() == found.rules() == []
+    assert np.isnan([found["fitted"].restitution, found["fitted"].peak_force_N]).all()
     assert all(np.isnan(row["restitution"]) and row["restitution_std"] == ""
                for row in found.written())  # fmt: skip
     made = picture(found)
