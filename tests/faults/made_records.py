@@ -35,3 +35,28 @@ def table(path, cells, head="time_s,force_N", times=None):
 
 def recorded(path, value):
     return table(path, [f"{v:.3f}" for v in value])
+
+
+def tracker_project(points, *, delta_t="5.0", angle=0.0):
+    cls = "org.opensourcephysics.cabrillo.tracker.PointMass"
+    frames = "".join(
+        f'<property name="[{k}]" type="object"><object class="{cls}$FrameData">'
+        f'<property name="n" type="int">{k}</property>'
+        f'<property name="x" type="double">{x}</property>'
+        f'<property name="y" type="double">{y}</property></object></property>'
+        for k, (x, y) in points.items()
+    )
+    axes = "org.opensourcephysics.media.core.ImageCoordSystem$FrameData"
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<object class="org.opensourcephysics.cabrillo.tracker.TrackerPanel">'
+        f'<property name="delta_t" type="double">{delta_t}</property>'
+        f'<property name="coords"><object class="{axes}">'
+        '<property name="xorigin" type="double">100.0</property>'
+        '<property name="yorigin" type="double">200.0</property>'
+        f'<property name="angle" type="double">{angle}</property>'
+        '<property name="xscale" type="double">500.0</property>'
+        '<property name="yscale" type="double">500.0</property></object></property>'
+        f'<property name="tracks"><object class="{cls}"><property name="name">ball</property>'
+        f'<property name="framedata">{frames}</property></object></property></object>'
+    )

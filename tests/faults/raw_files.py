@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Literal, get_args, get_origin
 
 import numpy as np
+from made_records import tracker_project
 
 UNITS = (b"mm", b"um", b"kN", b"furlong", b"m/s2", b"g", b"%", b"V", b"px", b"MPa", b"ms", b"")
 TEXTS = (
@@ -31,7 +32,7 @@ def _pulse():
     return t, f + np.random.default_rng(0).normal(0.0, 1.0, t.size)
 
 
-def _bouncing():
+def bouncing():
     t = np.arange(0.0, 1.3, 0.005)
     z, start, speed = 0.5 - 4.9 * t**2, 0.319, 3.13 * 0.8
     while start < 1.3:
@@ -42,7 +43,7 @@ def _bouncing():
 
 
 def _markers(end):
-    t, z = _bouncing()
+    t, z = bouncing()
     places = [c for k in range(3) for c in (0.1 * (k == 1) + 0 * z, 0.1 * (k == 2) + 0 * z, z)]
     if end == ".csv":
         return _table("time_s," + ",".join(f"{m}_{a}_m" for m in "ABC" for a in "xyz"), t, *places)
@@ -149,16 +150,9 @@ def _zipped():
 
 
 def _tracker():
-    _t, z = _bouncing()
-    places = "".join(
-        f'<property name="[{k}]"><object><property name="x">5</property>'
-        f'<property name="y">{200.0 - 300.0 * h:.3f}</property></object></property>'
-        for k, h in enumerate(z[::2])
-    )
-    return (
-        '<object class="org.x.tracker.TrackerPanel"><property name="delta_t">10</property>'
-        '<object class="org.x.tracker.PointMass"><property name="name">b</property>'
-        f'<property name="framedata">{places}</property></object></object>'
+    _t, z = bouncing()
+    return tracker_project(
+        {2 * k: (100.0, 200.0 - 500.0 * h) for k, h in enumerate(z[::2])}
     ).encode()
 
 
@@ -200,7 +194,7 @@ FILES = {
     "force": (".csv", _force, "table", {"holds": "force", "mass_kg": 0.1}),
     "volts": (".txt", _force, "table", {"holds": "acceleration", "gain": 3.0}),
     "press": (".csv", _pressed, "press", {}),
-    "height": (".csv", lambda: _table("t_s,h_m", *_bouncing()), "table", {"holds": "height"}),
+    "height": (".csv", lambda: _table("t_s,h_m", *bouncing()), "table", {"holds": "height"}),
     "bounces": (".csv", lambda: b"t (s)\n0.5\n1.0\n1.4\n1.72\n1.98\n2.18\n2.34\n", "table",
                 {"holds": "bounces"}),
     "rebounds": (".csv", lambda: b"drop_cm,a,b\n50,20,19\n40,17,18\n30,13,12.5\n", "table",

@@ -12,45 +12,21 @@ from dentscope.recordings.recording_set import read_as
 from dentscope.reduce.images.clip import read_clip
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.tension import reduce_tension
-
-
-def _trk(points, *, delta_t="5.0", angle=0.0):
-    cls = "org.opensourcephysics.cabrillo.tracker.PointMass"
-    frames = "".join(
-        f'<property name="[{k}]" type="object"><object class="{cls}$FrameData">'
-        f'<property name="n" type="int">{k}</property>'
-        f'<property name="x" type="double">{x}</property>'
-        f'<property name="y" type="double">{y}</property></object></property>'
-        for k, (x, y) in points.items()
-    )
-    axes = "org.opensourcephysics.media.core.ImageCoordSystem$FrameData"
-    return (
-        '<?xml version="1.0" encoding="UTF-8"?>'
-        '<object class="org.opensourcephysics.cabrillo.tracker.TrackerPanel">'
-        f'<property name="delta_t" type="double">{delta_t}</property>'
-        f'<property name="coords"><object class="{axes}">'
-        '<property name="xorigin" type="double">100.0</property>'
-        '<property name="yorigin" type="double">200.0</property>'
-        f'<property name="angle" type="double">{angle}</property>'
-        '<property name="xscale" type="double">500.0</property>'
-        '<property name="yscale" type="double">500.0</property></object></property>'
-        f'<property name="tracks"><object class="{cls}"><property name="name">ball</property>'
-        f'<property name="framedata">{frames}</property></object></property></object>'
-    )
+from made_records import tracker_project
 
 
 def test_a_tracker_project_in_its_own_axes(tmp_path):
     # 500 pixels a metre, origin at (100, 200), rows downwards
-    (tmp_path / "a.trk").write_text(_trk({3: (100.0, 200.0), 0: (150.0, 100.0)}))
+    (tmp_path / "a.trk").write_text(tracker_project({3: (100.0, 200.0), 0: (150.0, 100.0)}))
     table = read_columns(tmp_path / "a.trk")
     assert table.names == ("t [s]", "x [m]", "y [m]")
     assert table.values == pytest.approx(np.array([[0.0, 0.1, 0.2], [0.015, 0.0, 0.0]]))
     # axes turned by 90 degrees: their x points up in the picture
-    (tmp_path / "b.trk").write_text(_trk({0: (150.0, 100.0)}, angle=90.0))
+    (tmp_path / "b.trk").write_text(tracker_project({0: (150.0, 100.0)}, angle=90.0))
     assert read_columns(tmp_path / "b.trk").values[0] == pytest.approx([0.0, 0.2, -0.1])
     # what is damaged is left out, and axes without a number are those of the picture
     (tmp_path / "d.trk").write_text(
-        _trk({0: ("nan", "1e999"), 1: ("lost", 2.0), 2: (150.0, 100.0)}, angle="inf")
+        tracker_project({0: ("nan", "1e999"), 1: ("lost", 2.0), 2: (150.0, 100.0)}, angle="inf")
     )
     assert read_columns(tmp_path / "d.trk").values == pytest.approx(np.array([[0.01, 0.1, 0.2]]))
     for text, words in (("<object>", "cannot be read"), ("<object/>", "0 tracks"),

@@ -95,38 +95,6 @@ def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
         assert picture.std() > 0.05
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "E_Pa = -1\nnu = 0.3", ["sphere.E_Pa", "-1"]),
-        ("nu = 0.3\nSy_Pa = 300e6", "nu = 0.5\nSy_Pa = 300e6", ["flat.nu", "0.5"]),
-        ("Sy_Pa = 300e6", "Sy_Pa = 0", ["flat.Sy_Pa"]),
-        ("radius_m = 0.002", "radius_m = 0", ["radius_m"]),
-        ("radius_m = 0.002", "", ["radius_m", "missing"]),
-        ("max_delta_over_R = 3e-4", "max_delta_over_R = 3", ["load.max_delta_over_R"]),
-        ("unload_from = [3e-4]", "unload_from = [0.1]", ["load.unload_from"]),
-        # legal numbers that coordinates in double precision cannot carry
-        (
-            "max_delta_over_R = 3e-4\nunload_from = [3e-4]",
-            "max_delta_over_R = 1e-12",
-            ["load.max_delta_over_R", "1e-07 to 0.5"],
-        ),
-        ("Sy_Pa = 300e6", "Sy_Pa = 1e3", ["Sy_Pa", "first yield at Delta/R = "]),
-        ('level = "smoke"', 'level = "best"', ["accuracy.level", "production"]),
-        ("[flat]", "[flat]\nhardness = 3", ["flat.hardness", "unknown key"]),
-    ],
-)
-def test_a_mistake_is_one_line_with_its_key(tmp_path, capsys, old, new, words):
-    path = tmp_path / "case.toml"
-    path.write_text(GOOD.replace(old, new))
-    assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 2
-    message = capsys.readouterr().err.strip()
-    assert len(message.splitlines()) == 1
-    for word in [str(path), *words]:
-        assert word in message
-    assert not (tmp_path / "out").exists()
-
-
 HARD = """
 radius_m = 0.002
 [sphere]
@@ -181,36 +149,58 @@ def test_a_flow_curve_a_rate_and_a_speed_reach_the_solver(tmp_path):
     )
 
 
+WRONG = [
+    ("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "E_Pa = -1\nnu = 0.3", ["sphere.E_Pa", "-1"]),
+    ("nu = 0.3\nSy_Pa = 300e6", "nu = 0.5\nSy_Pa = 300e6", ["flat.nu", "0.5"]),
+    ("Sy_Pa = 300e6", "Sy_Pa = 0", ["flat.Sy_Pa"]),
+    ("radius_m = 0.002", "radius_m = 0", ["radius_m"]),
+    ("radius_m = 0.002", "", ["radius_m", "missing"]),
+    ("max_delta_over_R = 3e-4", "max_delta_over_R = 3", ["load.max_delta_over_R"]),
+    ("unload_from = [3e-4]", "unload_from = [0.1]", ["load.unload_from"]),
+    # legal numbers that coordinates in double precision cannot carry
+    (
+        "max_delta_over_R = 3e-4\nunload_from = [3e-4]",
+        "max_delta_over_R = 1e-12",
+        ["load.max_delta_over_R", "1e-07 to 0.5"],
+    ),
+    ("Sy_Pa = 300e6", "Sy_Pa = 1e3", ["Sy_Pa", "first yield at Delta/R = "]),
+    ('level = "smoke"', 'level = "best"', ["accuracy.level", "production"]),
+    ("[flat]", "[flat]\nhardness = 3", ["flat.hardness", "unknown key"]),
+]
+WRONG_FLOW = [
+    ("q = 4", "", ["flat.rate.q", "missing", "cowper-symonds"]),
+    ("q = 4", "q = 4\nC = 0.1", ["flat.rate.C", "0.1", "D_1_s, q"]),
+    ('law = "cowper-symonds"', 'law = "fast"', ["flat.rate.law", "fast"]),
+    ("speed_m_s = 2.0", "", ["case.toml", "load.speed_m_s", "missing"]),
+    ("speed_m_s = 2.0", "speed_m_s = -2.0", ["speed_m_s", "-2"]),
+    ("speed_m_s = 2.0", "speed_m_s = [[0.1, 2], [0.0, 1]]", ["speed_m_s", "[0, 1]"]),
+    ("curve.csv", "other.csv", ["case.toml", "flat.flow_curve", "other.csv"]),
+    ('flow_curve = "curve.csv"', 'flow_curve = "curve.csv"\nSy_Pa = 3e8',
+     ["flat.Sy_Pa", "2.76e+08"]),
+    ('flow_curve = "curve.csv"', "", ["flat.Sy_Pa", "missing"]),
+    ('flow_curve = "curve.csv"\n', 'flow_curve = "curve.csv"\n' + SWIFT[14:],
+     ["flat.hardening", "flow_curve"]),
+    ('flow_curve = "curve.csv"\n', SWIFT.replace("600e6", "200e6"), ["flat.hardening.K_Pa"]),
+    ('flow_curve = "curve.csv"\n', SWIFT.replace("n = 0.2", "b = 2"),
+     ["flat.hardening.n", "missing"]),
+    ("nu = 0.33", "rigid = true", ["flat", "rigid"]),
+]  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("q = 4", "", ["flat.rate.q", "missing", "cowper-symonds"]),
-        ("q = 4", "q = 4\nC = 0.1", ["flat.rate.C", "0.1", "D_1_s, q"]),
-        ('law = "cowper-symonds"', 'law = "fast"', ["flat.rate.law", "fast"]),
-        ("speed_m_s = 2.0", "", ["case.toml", "load.speed_m_s", "missing"]),
-        ("speed_m_s = 2.0", "speed_m_s = -2.0", ["speed_m_s", "-2"]),
-        ("speed_m_s = 2.0", "speed_m_s = [[0.1, 2], [0.0, 1]]", ["speed_m_s", "[0, 1]"]),
-        ("curve.csv", "other.csv", ["case.toml", "flat.flow_curve", "other.csv"]),
-        ('flow_curve = "curve.csv"', 'flow_curve = "curve.csv"\nSy_Pa = 3e8',
-         ["flat.Sy_Pa", "2.76e+08"]),
-        ('flow_curve = "curve.csv"', "", ["flat.Sy_Pa", "missing"]),
-        ('flow_curve = "curve.csv"\n', 'flow_curve = "curve.csv"\n' + SWIFT[14:],
-         ["flat.hardening", "flow_curve"]),
-        ('flow_curve = "curve.csv"\n', SWIFT.replace("600e6", "200e6"), ["flat.hardening.K_Pa"]),
-        ('flow_curve = "curve.csv"\n', SWIFT.replace("n = 0.2", "b = 2"),
-         ["flat.hardening.n", "missing"]),
-        ("nu = 0.33", "rigid = true", ["flat", "rigid"]),
-    ],
-)  # fmt: skip
-def test_a_mistake_in_a_flow_law_is_one_line(tmp_path, capsys, old, new, words):
+    ("text", "old", "new", "words"),
+    [*((GOOD, *row) for row in WRONG), *((HARD, *row) for row in WRONG_FLOW)],
+)
+def test_a_mistake_is_one_line_with_its_key(tmp_path, capsys, text, old, new, words):
     (tmp_path / "curve.csv").write_text(CURVE)
     path = tmp_path / "case.toml"
-    path.write_text(HARD.replace(old, new))
+    path.write_text(text.replace(old, new))
     assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 2
     message = capsys.readouterr().err.strip()
     assert len(message.splitlines()) == 1, message
-    for word in words:
+    for word in [str(path), *words]:
         assert word in message
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_flow_curve_of_a_recording_set_is_one_of_a_case(tmp_path):

@@ -178,19 +178,14 @@ def test_a_zero_is_told_by_a_twentieth_or_by_two_and_a_half_times_the_least(leas
     assert abs(_zero(part, bent, (1.0, 1.0)).value) > 1e-4
 
 
-@pytest.mark.parametrize("power", [2.0, 1.5, 1.2, 1.0])
-def test_a_loading_rises_with_a_power_of_1_to_2(power) -> None:
-    depth = np.concatenate([np.linspace(0.0, 1.0, 2001), np.linspace(1.0, 0.0, 100)[1:]])
+@pytest.mark.parametrize("power", [2.0, 1.5, 1.25, 1.2, 1.0])
+@pytest.mark.parametrize(
+    ("read", "up", "down"), [(contact_zero, 2001, 100), (left_depth, 100, 2001)]
+)
+def test_loading_and_unloading_follow_a_power_of_1_to_2(power, read, up, down) -> None:
+    depth = np.concatenate([np.linspace(0.0, 1.0, up), np.linspace(1.0, 0.0, down)[1:]])
     load = depth**power
-    found = contact_zero(load, depth, cycle(load, 2000), 0.0)
-    assert found.value == pytest.approx(0.0, abs=2e-3)
-
-
-@pytest.mark.parametrize("power", [2.0, 1.5, 1.25, 1.0])
-def test_an_unloading_falls_with_a_power_of_1_to_2(power) -> None:
-    depth = np.concatenate([np.linspace(0.0, 1.0, 100), np.linspace(1.0, 0.0, 2001)[1:]])
-    load = depth**power
-    found = left_depth(load, depth, cycle(load, 99), 0.0)
+    found = read(load, depth, cycle(load, up - 1), 0.0)
     assert found.value == pytest.approx(0.0, abs=2e-3)
 
 
