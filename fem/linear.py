@@ -29,8 +29,6 @@ from .rules import RULES
 # limit: most steps of GMRES with old factors [-]
 _KRYLOV = 12
 
-_HELD, _OUTSIDE = -1, -2
-
 Solve = Callable[[Array], Array]
 
 
@@ -66,25 +64,22 @@ def _scatter(data, position, tangent):
 
 @njit(cache=True)
 def _scatter_triplets(data, indptr, indices, number, row, col, value, n, places):
-    """Add the triplets; `places` keeps each one's row, column and place for the next time."""
+    """Add the triplets; `places` keeps each one's row, column and place for the next time.
+
+    False: one lies outside of the pattern. What is held has no place.
+    """
     for k in range(n):
         if places[k, 0] != row[k] or places[k, 1] != col[k]:
-            at = _place(indptr, indices, number[row[k]], number[col[k]])
-            if at == _OUTSIDE:
-                return False
+            i, j = number[row[k]], number[col[k]]
+            at = -1
+            if i >= 0 and j >= 0:
+                at = indptr[j] + np.searchsorted(indices[indptr[j] : indptr[j + 1]], i)
+                if at == indptr[j + 1] or indices[at] != i:
+                    return False
             places[k, 0], places[k, 1], places[k, 2] = row[k], col[k], at
         if places[k, 2] >= 0:
             data[places[k, 2]] += value[k]
     return True
-
-
-@njit(cache=True)
-def _place(indptr, indices, i, j):
-    """Where the matrix has row i and column j; negative: held, or outside of the pattern."""
-    if i < 0 or j < 0:
-        return _HELD
-    at = indptr[j] + np.searchsorted(indices[indptr[j] : indptr[j + 1]], i)
-    return at if at < indptr[j + 1] and indices[at] == i else _OUTSIDE
 
 
 class LinearSystem:

@@ -96,11 +96,11 @@ def moved_outwards(grid: Discretisation, values: Array, factor: float) -> Array:
 
     What is held, and the innermost block, keep their own.
     """
-    moved = values.reshape(-1, 2).copy()
+    moved = values.copy()
+    nodal = moved.reshape(-1, 2)
     for layers in grid.layers:
         level = layers.level
-        moved[layers.nodes] = _linear(level, moved[layers.nodes], level / factor)
-    moved = moved.reshape(-1)
+        nodal[layers.nodes] = _linear(level, nodal[layers.nodes], level / factor)
     moved[grid.held] = values[grid.held]
     return moved
 

@@ -498,7 +498,7 @@ def test_a_rod_that_stands_has_no_spin_and_one_that_leans_a_band_of_its_rebound(
     blows = []
     for angle in (90, 45):
         content["impact"] |= {"angle_deg": angle}
-        blows.append(blow_of(setup_of(content, source="rod.toml"), [LAWS["fitted"]]))
+        blows.append(blow(content))
     upright, leaning = (dict(one.table()) for one in blows)
     assert not any(name.startswith("spin") for name in upright)
     told = leaning["rebound speed [m/s]"]
@@ -511,7 +511,7 @@ def test_bands_whose_blows_did_not_end_are_told():
     # a rod as short as it is thick, whose vibrations take more steps than a band is given
     content = tomllib.loads(template("rod")) | {"sweep": {}}
     content["strikers"]["rod"]["length_m"] = 1e-3
-    found = blow_of(setup_of(content, source="rod.toml"), [LAWS["fitted"]])
+    found = blow(content)
     assert "without the part of metal: a blow for it did not end" in "\n".join(found.rules())
 
 
