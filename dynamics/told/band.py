@@ -150,11 +150,12 @@ def compared(law: ContactLaw, pair: Pair, depth: float) -> bool:
 
 def too_deep(law: ContactLaw, pair: Pair, depths: Sequence[float] | Array) -> str:
     """Say how many of several blows, by their depths (n,) [m], go beyond; empty: none."""
-    far = [d for d in depths if math.isfinite(d) and not compared(law, pair, d)]
-    if not far:
+    found = sorted(d for d in depths if math.isfinite(d))
+    if not found or compared(law, pair, found[-1]):
         return ""
+    far = [d for d in found if not compared(law, pair, d)]
     return (
-        f"{law.name}: {len(far)} of {len(depths)} impacts go so deep, to {max(far) / pair.R:.2g} "
+        f"{law.name}: {len(far)} of {len(depths)} impacts go so deep, to {far[-1] / pair.R:.2g} "
         "R, that no law was compared with finite elements there"
     )
 
