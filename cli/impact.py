@@ -115,8 +115,8 @@ def _sweep(
         first = first.joined(other)
     first = first.with_stds(stds)
     scene, depths = setup.scene(laws[0]), curves[laws[0].name]["peak_depth_m"]
-    deep = too_deep(laws[0], scene.pair, depths)
-    told = [*([deep] if deep else []), *swept_above_one(first), *swept_walls(scene, first)]
+    told = [*too_deep(laws[0], scene.pair, depths)]
+    told += [*swept_above_one(first), *swept_walls(scene, first)]
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
     written = [table]

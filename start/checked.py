@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, Literal, Self, cast, overload
 
 from numpy.typing import ArrayLike
 from pydantic import TypeAdapter, ValidationError
@@ -75,12 +75,18 @@ class CheckedMaterial(Body, metaclass=_Checked):
 
     __slots__ = ()
 
-    if TYPE_CHECKING:  # a type checker asks for both
+    if TYPE_CHECKING:  # a type checker asks for both, of what deforms
 
+        @overload
         def __init__(
-            self, E: float = ..., nu: float = ..., Sy: float = ..., density: float = ..., *,
+            self, E: float, nu: float, Sy: float = ..., density: float = ..., *,
             flow: FlowLike | None = ..., rigid: bool = ..., name: str = ...,
         ) -> None: ...  # fmt: skip
+        @overload
+        def __init__(
+            self, *, rigid: Literal[True], density: float = ..., name: str = ...
+        ) -> None: ...
+        def __init__(self, *given: Any, **named: Any) -> None: ...
 
     def __new__(
         cls, E: float = math.nan, nu: float = math.nan, Sy: float = math.inf,

@@ -148,13 +148,13 @@ def compared(law: ContactLaw, pair: Pair, depth: float) -> bool:
     return need.regime == "elastic" or need.a_over_R <= reach
 
 
-def too_deep(law: ContactLaw, pair: Pair, depths: Sequence[float] | Array) -> str:
-    """Say how many of several blows, by their depths (n,) [m], go beyond; empty: none."""
+def too_deep(law: ContactLaw, pair: Pair, depths: Sequence[float] | Array) -> Iterator[str]:
+    """Say how many of several blows, by their depths (n,) [m], go beyond."""
     found = sorted(d for d in depths if math.isfinite(d))
     if not found or compared(law, pair, found[-1]):
-        return ""
+        return
     far = [d for d in found if not compared(law, pair, d)]
-    return (
+    yield (
         f"{law.name}: {len(far)} of {len(depths)} impacts go so deep, to {far[-1] / pair.R:.2g} "
         "R, that no law was compared with finite elements there"
     )

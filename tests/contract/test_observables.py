@@ -4,6 +4,7 @@ import ast
 from pathlib import Path
 
 import numpy as np
+import pytest
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy.comparison.cells import compared
 from dentscope.discrepancy.nulls.ensemble import press
@@ -87,6 +88,22 @@ def test_no_other_module_holds_a_table_of_observables():
         if name != "direction"
     }
     assert found == set(CHOICES)
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ('UNIT = {"restitution": "-", "contact_time_s": "s", "peak_force_N": "N"}', 1),
+        ('LOG = ("restitution", "contact_time_s", "peak_force_N")', 1),
+        ('S = (("e", "restitution"), ("t", "contact_time_s"), ("F", "peak_force_N"))', 1),
+        ('P = {n: 1 for n in ["restitution", "contact_time_s", "peak_force_N"]}', 1),
+        ('def f():\n return {"restitution": e, "contact_time_s": t, "peak_force_N": F}', 0),
+        ('LOG = ("restitution", "contact_time_s", "trial")', 0),
+    ],
+)
+def test_the_walk_sees_tables_and_not_results(tmp_path, text, count):
+    (tmp_path / "a.py").write_text(text)
+    assert len(tables_in(tmp_path / "a.py")) == count
 
 
 def test_every_row_reaches_files_and_simulation():

@@ -246,6 +246,21 @@ def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
         read_setup(write(tmp_path, flat)).scene(HERTZ)
 
 
+def test_command_line_from_file(tmp_path, capsys):
+    file = write(tmp_path, SETUP + "[sweep]\nimpact_speed_m_s = [0.5, 2]\n")
+    assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    assert "kinetic restitution" in printed
+    for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
+        assert (tmp_path / "out" / name).stat().st_size > 100
+    # By hand from the CSV: the energetic restitution of Hertz's law is 1.
+    header, row = (tmp_path / "out/setup.csv").read_text().splitlines()[:2]
+    values = dict(zip(header.split(","), row.split(","), strict=True))
+    assert values["law"] == "hertz"
+    assert float(values["energetic_restitution"]) == pytest.approx(1.0, abs=1e-6)
+    assert float(values["friction_impulse_ratio"]) == pytest.approx(0.13, rel=1e-6)
+
+
 def test_a_budget_that_runs_out_ends_with_code_3(tmp_path, capsys):
     text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
     text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
