@@ -1,7 +1,8 @@
 """Decide: what leads is said, with its probability, from one half on; one rule for all.
 
-Below it, explanations that together have `RULES.together` are said to share it; else nothing has
-one half, and the verdict is `undetermined`. A cautious reader asks for more (`RULES.cautious`).
+Below it, what takes part with `RULES.together`, whatever else does, is said; or explanations that
+have as much together are said to share it; else the verdict is `undetermined`. A cautious reader
+asks for more (`RULES.cautious`).
 """
 
 from __future__ import annotations
@@ -86,13 +87,20 @@ def _said(ranking: Ranking, odds: Odds, least: float) -> Choice:
             return Choice(OUTSIDE, (), told, tuple(alike))
     members = _fits(ranking, (lead,))
     if odds.probability[lead] >= least and members:
-        number = all(map(is_wrong, members[0].mechanisms))
-        return Choice(WRONG_INPUT if number else "missing-physics", members, ())
+        return _named(members)
+    common = _fits(ranking, (k for k, p in odds.inclusion.items() if p >= RULES.together))
+    if common:
+        return _named(common[:1])
     shared = _sharing(odds)
     if not shared:
         return Choice("undetermined", (), (_unclear(odds),))
     text = f"{len(shared)} explanations share the probability: {' or '.join(shared)}"
     return Choice("indistinguishable", _fits(ranking, shared), (text,))
+
+
+def _named(members: tuple[Fit, ...]) -> Choice:
+    number = all(map(is_wrong, members[0].mechanisms))
+    return Choice(WRONG_INPUT if number else "missing-physics", members, ())
 
 
 def _sharing(odds: Odds) -> tuple[str, ...]:

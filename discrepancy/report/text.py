@@ -30,6 +30,9 @@ STORY_LEAST = 0.005
 # limit: explanations that the finding names where nothing is decided [-]: a line
 _NAMED_LEADING = 3
 
+# limit: probability from which the finding says what else may act beside what it names [-]
+_BESIDE = 0.1
+
 # limit: places between which four fifths of a prior lie [-]
 _MIDDLE = np.array([0.1, 0.9])
 _UNTOLD = "not told by these data"
@@ -57,7 +60,8 @@ def _finding(v: Verdict) -> str:
             f"noise and the stated uncertainties (probability {percent(p)})."
         )
     if v.verdict == WRONG_INPUT:
-        return " ".join(map(_wrong, v.wrong_inputs)) + " Nothing else is missing then."
+        beside = _beside(v) or " Nothing else is missing then."
+        return " ".join(map(_wrong, v.wrong_inputs)) + beside
     if v.verdict == "missing-physics":
         first = "".join(f"{_wrong(w)} " for w in v.wrong_inputs)
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
@@ -66,7 +70,7 @@ def _finding(v: Verdict) -> str:
         likely = "most likely " * (max(v.probabilities.values()) < RULES.cautious)
         return (
             f"{first}The simulation {likely}lacks this: {what}; probability that it takes part"
-            f"{each}: {sure}."
+            f"{each}: {sure}.{_beside(v)}"
         )
     if v.verdict == "indistinguishable":
         shared = [f.name for f in v.choice.members]
@@ -111,6 +115,19 @@ def _wrong(w: WrongInput) -> str:
         found += f" {n.told.format(f'{quantity(w.off, unit)} ({interval(w.low, w.high, unit)})')}"
     slip = n.slip(w.low, w.high)
     return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
+
+
+def _beside(v: Verdict) -> str:
+    """What may act beside all that is named, with its probability; or ""."""
+    named = {*v.mechanisms, *(w.number.name for w in v.wrong_inputs)}
+    found: dict[str, float] = {}
+    for label, p in v.probabilities.items():
+        parts = set(label.split("+"))
+        for name in parts - named if named < parts else ():
+            found[name] = found.get(name, 0.0) + p
+    likely = sorted((n for n, p in found.items() if p >= _BESIDE), key=lambda n: -found[n])
+    told = [f"{explanation(n, v.titles)} ({percent(found[n])})" for n in likely[:_NAMED_LEADING]]
+    return f" Beside it perhaps: {joined(told, 'or')}." if told else ""
 
 
 def _family(v: Verdict) -> str:

@@ -149,6 +149,16 @@ def test_a_name_of_less_than_seven_tenths_is_the_most_likely() -> None:
     )
 
 
+def test_what_may_act_beside_a_name_is_told() -> None:
+    v = said("missing-physics", 0.002, Located((), (), 3.0))
+    v.probabilities = {
+        "work-hardening+sticky-tape": 0.45, "work-hardening": 0.39, "sticky-tape": 0.16
+    }  # fmt: skip
+    v.mechanisms, v.inclusion = ("work-hardening",), {"work-hardening": 0.84}
+    assert headline(v).endswith("it takes part: 84 %. Beside it perhaps: a tape holds the tip back "
+                                "(45 %).")  # fmt: skip
+
+
 def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     seen = Located((miss(6.0),), (), 3.0)
     v = said("missing-physics", 0.1, seen)

@@ -93,7 +93,11 @@ def test_numbers_of_one_condition_say_nothing(toy) -> None:
         (odds(a=0.58, outside=0.42), "missing-physics", ["a"]),
         (odds(a=0.43, outside=0.57), OUTSIDE, []),
         (odds(a_b=0.6, a=0.4), "missing-physics", ["a+b"]),
-        # below it what together has four fifths
+        # below it what takes part with four fifths, whatever else does
+        (odds(a_b=0.4, a_c=0.3, a=0.2), "missing-physics", ["a"]),
+        (odds(a_b=0.45, a=0.4, c=0.1), "missing-physics", ["a"]),
+        (odds(a_b=0.4, a=0.38, b=0.15), "indistinguishable", ["a+b", "a", "b"]),
+        # or what together has as much
         (odds(a=0.49, b=0.48), "indistinguishable", ["a", "b"]),
         (odds(a=0.45, a_b=0.3, b=0.2), "indistinguishable", ["a", "a+b", "b"]),
         (odds(a=0.3, b=0.3, c=0.25), "indistinguishable", ["a", "b", "c"]),
