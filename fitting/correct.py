@@ -7,6 +7,7 @@ were chosen by what they give for combinations left out.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -16,7 +17,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ..core.arrays import Array
 from ..models.closed_form import Coefficients, PairNumbers, of_pair
 from ..models.correction import CHANNELS, PairCorrection, bumps, coordinates, moved
-from .prediction import Prediction, misfit, predict_by
+from .prediction import Prediction, misfit, predict_by, slopes_of
 from .rules import RULES
 from .table import ResidualTable, Table
 
@@ -101,23 +102,36 @@ class _Rows(NamedTuple):
     def normal(self, shifts: Array) -> tuple[Array, Array]:
         """Each case's normal matrix, shape (n_cases, k, k), and gradient, shape (n_cases, k)."""
         cases, k = shifts.shape
-        slopes = []
-        for channel in range(k):
-            at = shifts.astype(complex)
-            at[:, channel] += 1e-30j
-            slopes.append([np.imag(part) / 1e-30 for part in self.misfit(at)])
+        here = self.misfit(shifts)
+
+        def moved_by(each: Array) -> Array:
+            return np.concatenate([part.ravel() for part in self.misfit(shifts + each)])
+
+        both = np.split(slopes_of(moved_by, np.zeros(k)), [here[0].size])
         matrix, gradient = np.zeros((cases, k, k)), np.zeros((cases, k))
         cases_of = (self.table.case, self.turns.case)
-        for side, (off, number) in enumerate(zip(self.misfit(shifts), cases_of, strict=True)):
-            slope = np.stack([s[side] for s in slopes])  # (k, quantities, rows)
+        for off, slope, number in zip(here, both, cases_of, strict=True):
+            order = np.argsort(number, kind="stable")
+            slope = slope.reshape(*off.shape, k)[:, order]  # (quantities, rows, k)
             weight = 1.0 / np.sqrt(1.0 + (off / RULES.outlier) ** 2)
-            for case in np.unique(number):
-                m = number == case
-                J = slope[:, :, m].reshape(k, -1)
-                w = weight[:, m].ravel()
-                matrix[case] += (J * w) @ J.T
-                gradient[case] += (J * w) @ off[:, m].ravel()
+            weight, off = weight[:, order], off[:, order]
+            ends = np.searchsorted(number[order], np.arange(cases + 1))
+            for case, (first, last) in enumerate(itertools.pairwise(ends)):
+                J = slope[:, first:last].reshape(-1, k)
+                w = weight[:, first:last].ravel()
+                matrix[case] += (J.T * w) @ J
+                gradient[case] += (J.T * w) @ off[:, first:last].ravel()
         return matrix, gradient
+
+
+def _normal_of(basis: Array, matrix: Array) -> Array:
+    """Normal matrix of the weights, channel by channel, of those of the cases, (n, k, k)."""
+    m, k = basis.shape[1], matrix.shape[1]
+    whole = np.empty((k, m, k, m))
+    for i in range(k):
+        for j in range(i + 1):
+            whole[i, :, j] = whole[j, :, i] = basis.T @ (matrix[:, i, j, None] * basis)
+    return whole.reshape(k * m, k * m)
 
 
 def _descend(rows: _Rows, basis: Array) -> Array:
@@ -131,15 +145,12 @@ def _descend(rows: _Rows, basis: Array) -> Array:
     best = objective(weights)
     for _ in range(_REGRESSION_STEPS):
         matrix, gradient = rows.normal(basis @ weights)
-        whole = np.einsum("nm,nkl,np->mkpl", basis, matrix, basis, optimize=True)
-        whole = whole.reshape(m * k, m * k)
-        slope = (
-            np.einsum("nm,nk->mk", basis, gradient).ravel() + RULES.shift_prior * weights.ravel()
-        )
+        whole = _normal_of(basis, matrix)
+        slope = (gradient.T @ basis + RULES.shift_prior * weights.T).ravel()
         before = best
         for _ in range(8):
             damped = whole + RULES.shift_prior * (1.0 + damping) * np.eye(m * k)
-            step = -cho_solve(cho_factor(damped), slope).reshape(m, k)
+            step = -cho_solve(cho_factor(damped), slope).reshape(k, m).T
             step *= min(1.0, RULES.farthest_shift / float(np.abs(basis @ step).max()))
             value = objective(weights + step)
             if value < best:

@@ -1,12 +1,12 @@
 """Regression of the compact law on a campaign, with honest errors.
 
 Rows of one material combination are not independent: the standard errors allow for that (clustered
-by combination). The derivatives are exact: the law is evaluated on complex numbers.
+by combination).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
 from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START
-from .prediction import Errors, errors_of, misfit, predict
+from .prediction import Errors, errors_of, misfit, predict, slopes_of
 from .ripple import ripple_of
 from .rules import RULES
 from .table import ResidualTable, Table
@@ -57,13 +57,17 @@ def fit_tables(
     *,
     start: Mapping[str, float] | None = None,
     change: float = 1e-8,
+    ripple: Array | None = None,
 ) -> FormFit:
     """Fit the compact law to the rows of a campaign, from `form.START` if nothing is given.
 
-    The regression ends at a relative change of the misfit of `change`.
+    The regression ends at a relative change of the misfit of `change`. `ripple`: of ln F and ln a
+    of each row's case, shape (2, n); by `ripple_of` if not given.
     """
     first = np.array([{**START, **(start or {})}[name] for name in COEFFICIENTS])
-    values, jacobian, misfit, ok = _regress(table, turns, first, change=change)
+    values, jacobian, misfit, ok = _regress(
+        _misfit_of(table, turns, ripple_of(table) if ripple is None else ripple), first, change
+    )
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 4)])
     covariance = covariance_of(jacobian, misfit, clusters)
     return FormFit(
@@ -78,30 +82,28 @@ def fit_tables(
 
 
 def _regress(
-    table: Table, turns: ResidualTable, first: Array, *, change: float
+    residual: Callable[[Any], Any], first: Array, change: float
 ) -> tuple[Array, Array, Array, bool]:
     """Minimise until the misfit changes by less than `change`, relatively."""
     low, high = np.array([LIMITS[name] for name in COEFFICIENTS]).T
     inside = np.clip(first, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
-    residual = _misfit_of(table, turns)
     found = least_squares(
         residual,
         inside,
-        jac=lambda x: _complex_step(residual, x),
+        jac=lambda x: slopes_of(residual, x),
         bounds=(low, high),
         x_scale="jac",
         loss="soft_l1",
         ftol=change,
         max_nfev=300,
     )
-    plain = residual(found.x)
-    return found.x, _complex_step(residual, found.x), plain, bool(found.success)
+    return found.x, slopes_of(residual, found.x), residual(found.x), bool(found.success)
 
 
-def _misfit_of(table: Table, turns: ResidualTable) -> Callable[[Any], Any]:
+def _misfit_of(table: Table, turns: ResidualTable, ripple: Iterable[Array]) -> Callable[[Any], Any]:
     """What `prediction.misfit` says, in its units, as a function of the coefficients."""
     # a case whose mesh ripples says less about the curve than one that does not
-    unit_F, unit_a = (np.hypot(RULES.form_unit, ripple) for ripple in ripple_of(table))
+    unit_F, unit_a = (np.hypot(RULES.form_unit, one) for one in ripple)
     unit = RULES.form_unit
     units = (unit_F, unit_a, unit, unit, unit, RULES.form_unit_exponent, RULES.form_unit_back)
 
@@ -112,15 +114,6 @@ def _misfit_of(table: Table, turns: ResidualTable) -> Callable[[Any], Any]:
         )
 
     return scaled
-
-
-def _complex_step(function: Callable[[Any], Any], x: Array) -> Array:
-    columns = []
-    for k, value in enumerate(x):
-        moved = x.astype(complex)
-        moved[k] = value + 1e-30j
-        columns.append(np.imag(function(moved)) / 1e-30)
-    return np.stack(columns, axis=1)
 
 
 def covariance_of(jacobian: Array, misfit: Array, clusters: Integers) -> Array:

@@ -65,9 +65,12 @@ def fit_laws(table: Table, turns: ResidualTable) -> FittedLaws:
 
     def anew(rest: Mask, rest_turns: Mask) -> list[Prediction]:
         fewer, turned = table.rows(rest), turns.rows(rest_turns)
-        thin = fewer.rows(np.arange(len(fewer.D)) % RULES.every_depth == 0)
-        values = fit_tables(thin, turned, start=start, change=ENOUGH).values
-        found = correct(values, fewer, turned, ripple[:, rest])
+        of_rest = ripple[:, rest]
+        every = np.arange(len(fewer.D)) % RULES.every_depth == 0
+        values = fit_tables(
+            fewer.rows(every), turned, start=start, change=ENOUGH, ripple=of_rest[:, every]
+        ).values
+        found = correct(values, fewer, turned, of_rest)
         return [predict(values, table, turns), corrected_prediction(values, found, table, turns)]
 
     own = (

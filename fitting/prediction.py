@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +20,9 @@ from ..models.closed_form import (
 )
 from .rules import RULES
 from .table import ResidualTable, Table
+
+# limit: step of a difference over what it is of, at least one [-]: the root of round-off
+_STEP = 1.5e-8
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class Prediction:
 
 
 def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
-    """Evaluate the compact law on every row; complex coefficients give complex rows."""
+    """Evaluate the compact law on every row."""
     return predict_by(of_pair(table.bodies, Coefficients(*values)), table, turns)
 
 
@@ -113,6 +117,14 @@ def misfit(p: Prediction, table: Table, turns: ResidualTable) -> tuple[list[Any]
         np.where(known, np.log(given_back(p, turns)), 0.0),
     ]
     return loading, unloading
+
+
+def slopes_of(function: Callable[[Array], Array], x: Array) -> Array:
+    """Derivatives of a function's values, shape (n,), by `x`, shape (k,), as (n, k)."""
+    here, columns = function(x), []
+    for k, h in enumerate(_STEP * np.maximum(np.abs(x), 1.0)):
+        columns.append((function(x + np.where(np.arange(len(x)) == k, h, 0.0)) - here) / h)
+    return np.stack(columns, axis=1)
 
 
 def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:

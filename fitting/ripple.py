@@ -19,11 +19,9 @@ from .table import Table
 @lru_cache(maxsize=1)
 def without_ripple(table: Table) -> Table:
     """Return the rows with ln F and ln a replaced by local cubics in ln Delta."""
-    return replace(
-        table,
-        force=np.exp(_smoothed(table, np.log(table.force))),
-        radius=np.exp(_smoothed(table, np.log(table.radius))),
-    )
+    both = np.stack([np.log(table.force), np.log(table.radius)], axis=1)
+    force, radius = np.exp(_smoothed(table, both)).T
+    return replace(table, force=force, radius=radius)
 
 
 def ripple_of(table: Table) -> tuple[Array, Array]:
@@ -45,6 +43,7 @@ def ripple_of(table: Table) -> tuple[Array, Array]:
 
 
 def _smoothed(table: Table, value: Array) -> Array:
+    """Values of the rows, shape (n, k), each by the local cubic of its case."""
     out = value.copy()
     x = np.log(table.D)
     for number in range(len(table.pairs)):

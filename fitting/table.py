@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
@@ -47,7 +48,7 @@ class CaseRows:
     pairs: tuple[Pair, ...] = field(kw_only=True)
     names: tuple[str, ...] = field(kw_only=True)
 
-    @property
+    @cached_property
     def bodies(self) -> Bodies:
         """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
         return bodies_of(self.pairs)

@@ -302,8 +302,7 @@ def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares
         force=np.exp([0.01]), radius=np.exp([0.02]), share=0.53 * one, total=0.54 * one,
         sphere=0.25 * one, exponent=1.53 * one,
     )  # fmt: skip
-    monkeypatch.setattr(form_fit, "ripple_of", lambda _: (0.0, 0.0))
     monkeypatch.setattr(form_fit, "predict", lambda *_: seen)
     monkeypatch.setattr(predicting, "given_back", lambda *_: np.exp([0.02]))
-    misfit = form_fit._misfit_of(table, turns)
+    misfit = form_fit._misfit_of(table, turns, (0.0, 0.0))
     assert misfit(np.zeros(1)) == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 1.0])
