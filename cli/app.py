@@ -43,21 +43,11 @@ app = typer.Typer(
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
-app.add_typer(campaign.app, name="campaign")
-app.add_typer(export.app, name="export")
-app.add_typer(laws.app, name="laws")
-app.add_typer(recordings.app, name="recordings")
-app.add_typer(reduce.app, name="reduce")
-app.command()(case)
-app.command()(fit)
-app.command()(impact)
-app.command()(inverse)
-app.command()(diagnose)
-app.command()(metal)
+for _part in (campaign, export, laws, recordings, reduce):
+    app.add_typer(_part.app, name=_part.__name__.rpartition(".")[2])
+for _command in (case, fit, impact, inverse, diagnose, metal, examples, keys, doctor):
+    app.command()(_command)
 app.command(name="materials")(show_materials)
-app.command()(examples)
-app.command()(keys)
-app.command()(doctor)
 for _name in ("figures", "verify", "proof", "challenge"):
     studies.add(app, _name)
 

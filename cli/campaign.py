@@ -89,7 +89,7 @@ def run(
                 progress.console.print(f"{_so_far(step.status)}: {picture}")
 
     try:
-        with in_use(out / "cases") as shared, progress:
+        with in_use(out / "cases") as shared, progress.bar:
             if shared and share.of == 1:
                 progress.console.print(
                     "another run computes here: a case may be computed twice; `--part 1/2` and "

@@ -22,8 +22,6 @@ class Progress:
         )
 
         self.cpu_s = 0.0
-        self.total = total
-        self.ended = 0
         self.forecast = forecast
         self.started = time.monotonic()
         self.console = Console()
@@ -34,21 +32,12 @@ class Progress:
             TimeElapsedColumn(),
             TextColumn("{task.fields[left]} left"),
             console=self.console,
+            disable=not self.console.is_terminal,
         )
         self.task = self.bar.add_task("cases", total=total, left=duration(forecast.left_s()))
 
-    def __enter__(self) -> Progress:
-        if self.console.is_terminal:
-            self.bar.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self.console.is_terminal:
-            self.bar.stop()
-
     def step(self, step: Any) -> None:
         """Show one case that ended."""
-        self.ended += 1
         self.cpu_s += step.cpu_s
         gone = time.monotonic() - self.started
         self.forecast.end(step.case, gone)
@@ -57,7 +46,8 @@ class Progress:
         word = "done" if step.done else "FAILED"
         line = f"{word} {step.case.name} ({step.cpu_s:.0f} s) {step.message}"
         if not self.console.is_terminal:
-            line = f"[{self.ended}/{self.total}, {left} left] {line}"
+            (task,) = self.bar.tasks
+            line = f"[{task.completed:.0f}/{task.total:.0f}, {left} left] {line}"
         self.console.print(line, highlight=False, markup=False)
 
 

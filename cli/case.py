@@ -159,19 +159,16 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
     """Write everything into one file: a run's file of a case, with uncertainties and fields."""
     from ..campaigns import Case
     from ..campaigns.case_file import case_image
+    from ..campaigns.schema import CURVE
 
     # the fields lie beside the case in this file, not in files of their own
     case = Case(name, replace(solution.problem, snapshots=()), solution.accuracy)
 
     def add(group: Any) -> None:
-        for key, unit in (
-            ("force", "N"), ("radius", "m"), ("radius_last_node", "m"),
-            ("sphere_share", "1"), ("hardness", "Pa"),
-        ):  # fmt: skip
-            data = group.create_dataset(
-                f"loading/{key}_uncertainty", data=getattr(uncertainty, key)
-            )
-            data.attrs["unit"] = unit
+        for key in ("force", "radius", "radius_last_node", "sphere_share", "hardness"):
+            values = getattr(uncertainty, key)
+            data = group.create_dataset(f"loading/{key}_uncertainty", data=values)
+            data.attrs["unit"] = CURVE[key].unit if key in CURVE else "1"
         for snapshot in solution.snapshots:
             part = group.create_group(f"fields-{snapshot.depth:.6g}")
             part.attrs["depth"] = snapshot.depth

@@ -10,6 +10,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.inputs.input_file import checked_file
+from ..core.output import write_file
 from . import studies
 from .campaign_data import PUBLISHED
 from .shared.places import folder_option, one_of, refuse_beside
@@ -95,7 +96,10 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> 
     page = write_report(result, content, found.table, found.turns, out, validation=found.validation)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
-        _publish(content, out)
+        _publish(content)
+        for name in ("errors", "maps"):
+            picture = _PAGE.parent / "pictures" / f"fitted-{name}.png"
+            write_file(picture, (out / f"{name}.png").read_bytes())
         console.print("the closed forms now use these coefficients")
     if not result.fit.outcome.completed:
         console.print(str(result.fit.outcome))
@@ -105,11 +109,10 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> 
 
 def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
     """Fit the law of metals that harden to the other coefficients in use."""
-    from ..core.output import write_file
     from ..fitting.coefficients import write_coefficients
     from ..fitting.refit import refit_hardening
     from ..fitting.table import read_sources
-    from ..models.coefficients import COEFFICIENTS_FILE, drawn_from, read_coefficients
+    from ..models.coefficients import drawn_from, read_coefficients
 
     content = read_coefficients()
     if content is None:
@@ -121,10 +124,7 @@ def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish:
     written = write_coefficients(content, out / "fitted.json")
     console.print(f"coefficients: {written}")
     if publish:
-        from ..studies.closed_form.page import published_section, update_page
-
-        write_file(COEFFICIENTS_FILE, written.read_bytes())
-        update_page(_PAGE, published_section(content))
+        _publish(content)
         console.print("the law of metals that harden now uses these coefficients")
     return 0
 
@@ -139,18 +139,14 @@ def _show_hardening(console: Console, content: dict[str, Any]) -> None:
     _show(console, uncertainty_rows({k: one["within"] for k, one in found["judged"].items()}))
 
 
-def _publish(content: dict[str, Any], out: Path) -> None:
-    """Put the coefficients where the laws read them, and tables and pictures into their page."""
-    from ..core.output import write_file
+def _publish(content: dict[str, Any]) -> None:
+    """Put the coefficients where the laws read them, and their tables into their page."""
     from ..fitting.coefficients import write_coefficients
     from ..models.coefficients import COEFFICIENTS_FILE
     from ..studies.closed_form.page import published_section, update_page
 
     write_coefficients(content, COEFFICIENTS_FILE)
     update_page(_PAGE, published_section(content))
-    folder = _PAGE.parent / "pictures"
-    for name in ("errors", "maps"):
-        write_file(folder / f"fitted-{name}.png", (out / f"{name}.png").read_bytes())
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:

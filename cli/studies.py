@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.util import find_spec
-from types import ModuleType
 
 import typer
 
@@ -43,11 +42,6 @@ def needed_for(what: str) -> None:
         raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
 
 
-def module(name: str) -> ModuleType:
-    """Return a module of the workshop's commands."""
-    return import_module(f"..studies.commands.{name}", __package__)
-
-
 def add(group: typer.Typer, name: str) -> None:
     """Add one of `COMMANDS` of the workshop to a group of the command line."""
     last = name.rsplit(" ", 1)[-1]
@@ -55,7 +49,7 @@ def add(group: typer.Typer, name: str) -> None:
         hidden = group.command(last, hidden=True, add_help_option=False, context_settings=_ANYTHING)
         hidden(lambda: needed_for(f"`dentscope {name}`"))
         return
-    part = module(COMMANDS[name])
+    part = import_module(f"..studies.commands.{COMMANDS[name]}", __package__)
     if hasattr(part, "app"):
         group.add_typer(part.app, name=last)
     else:

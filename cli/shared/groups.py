@@ -31,14 +31,19 @@ SECTIONS = (
     ),
     ("Behind the law", ("campaign", "fit")),
     ("To begin", ("examples", "materials", "keys", "doctor", "version")),
+    ("Workshop, in a checkout only", tuple(name for name in _WORKSHOP if " " not in name)),
 )
-"""Commands as the first help shows them; what stands in none comes last, as the workshop's."""
+"""Commands as the first help shows them; what stands in none comes last."""
 
 
 class Commands(TyperGroup):
-    """A group that shows its commands whole, and runs `alone` where none is given."""
+    """A group that shows its commands whole, and runs `alone` where none is given.
 
-    alone = ("--help",)
+    `sections`: titles and their commands; none: all under one title.
+    """
+
+    alone: tuple[str, ...] = ("--help",)
+    sections: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Take `alone` for an empty command line."""
@@ -48,7 +53,7 @@ class Commands(TyperGroup):
         """Write each command with its first sentence, in sections where there are some."""
         told = self.abouts(ctx)
         left = list(told)
-        for title, names in (*self.sections(), ("Commands", ())):
+        for title, names in (*self.sections, ("Commands", ())):
             here = [n for n in names if n in left] if names else left
             left = [n for n in left if n not in here]
             if here:
@@ -70,18 +75,11 @@ class Commands(TyperGroup):
             raise misused(f"no command {name!r}{meant}", allowed=", ".join(known))
         return super().resolve_command(ctx, args)
 
-    def sections(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Titles and their commands; none: all under one title."""
-        return ()
-
 
 class Sections(Commands):
     """The first group, in sections."""
 
-    def sections(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Titles and their commands."""
-        workshop = tuple(name for name in _WORKSHOP if " " not in name)
-        return (*SECTIONS, ("Workshop, in a checkout only", workshop))
+    sections = SECTIONS
 
 
 def _sentence(command: Any) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import types
 import typing
 from collections.abc import Iterator
+from importlib import import_module
 from typing import Annotated, Any, NamedTuple
 
 import typer
@@ -24,6 +25,14 @@ FILES = {
     "trials": "columns of a set's trials.csv",
 }
 """What there are keys of."""
+
+_SCHEMAS = {
+    "case": ("start.case_file", "CaseFile"),
+    "impact": ("dynamics.files.setup", "SetupFile"),
+    "inverse": ("dynamics.files.inverse_file", "InverseFile"),
+    "set": ("recordings.setup_file", "SetFile"),
+}
+"""Module and table of each, loaded when asked for: some bring the compiler of impacts."""
 
 _LEFT_OUT = "may be left out"
 _UNITS = {
@@ -78,31 +87,14 @@ def keys_of(kind: str) -> list[Key]:
             Key(
                 "",
                 name,
-                f"{_upper(c.meaning)}.",
+                f"{c.meaning[:1].upper()}{c.meaning[1:]}.",
                 "a text" if c.kind == "text" else _with_unit(c.allowed, name),
                 _LEFT_OUT,
             )
             for name, c in columns.items()
         ]
-    return list(_keys(_schema(kind), ""))
-
-
-def _schema(kind: str) -> type[BaseModel]:
-    if kind == "case":
-        from ...start.case_file import CaseFile
-
-        return CaseFile
-    if kind == "impact":
-        from ...dynamics.files.setup import SetupFile
-
-        return SetupFile
-    if kind == "inverse":
-        from ...dynamics.files.inverse_file import InverseFile
-
-        return InverseFile
-    from ...recordings.setup_file import SetFile
-
-    return SetFile
+    module, table = _SCHEMAS[kind]
+    return list(_keys(getattr(import_module(f"...{module}", __package__), table), ""))
 
 
 def _keys(model: type[BaseModel], table: str) -> Iterator[Key]:
@@ -138,7 +130,9 @@ def _table_in(annotation: Any) -> tuple[type[BaseModel] | None, str]:
 
 def _allowed(name: str, field: FieldInfo) -> str:
     """What the schema accepts, in words."""
-    words = [*_choices(field.annotation)] or [_kind(field.annotation)]
+    words = [_kind(field.annotation)]
+    if typing.get_origin(field.annotation) is typing.Literal:
+        words = [f'"{value}"' for value in typing.get_args(field.annotation)]
     limits = [getattr(getattr(m, "func", None), "allowed", "") for m in _metadata(field)]
     bounds = {"gt": "above {:g}", "ge": "{:g} or more", "lt": "below {:g}", "le": "up to {:g}"}
     for part in field.metadata:
@@ -152,11 +146,6 @@ def _metadata(field: FieldInfo) -> list[Any]:
     for part in (field.annotation, *typing.get_args(field.annotation)):
         found += getattr(part, "__metadata__", ())
     return found
-
-
-def _choices(annotation: Any) -> Iterator[str]:
-    if typing.get_origin(annotation) is typing.Literal:
-        yield from (f'"{value}"' for value in typing.get_args(annotation))
 
 
 def _kind(annotation: Any) -> str:
@@ -200,7 +189,3 @@ def _with_unit(text: str, name: str) -> str:
         return text
     unit = next((u for end, u in _UNITS.items() if name.endswith(f"_{end}")), "")
     return f"{text} [{unit}]" if unit else text
-
-
-def _upper(text: str) -> str:
-    return text[:1].upper() + text[1:]
