@@ -143,6 +143,7 @@ STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
 STRAINS = _range(0.0, 3.0, **{"%": 1e-2})
 """Of measured plastic strains: torsion reaches the largest."""
 SPEEDS = _range(1e-9, 2e4, **{"mm/s": 1e-3})
+RADII = _range(1e-9, 3.0, mm=1e-3, um=1e-6)
 """Of any approach [m/s]."""
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
@@ -151,7 +152,7 @@ Modulus = Annotated[Quantity, _between(1e3, 2e12, GPa=1e9, MPa=1e6)]
 Strength = Annotated[Quantity, AfterValidator(STRENGTHS)]
 Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
-Radius = Annotated[Quantity, _between(1e-9, 3.0, mm=1e-3, um=1e-6)]
+Radius = Annotated[Quantity, AfterValidator(RADII)]
 SeatRadius = Annotated[
     Quantity, _within(lambda x: 1e-9 <= abs(x) <= 1e3, "a radius up to 1000 m, or below 0 a seat's")
 ]

@@ -9,7 +9,6 @@ strengths are scaled, so that their ratio and with it the law's blend stay.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,7 +20,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..core.arrays import Array
 from ..core.material import Pair
-from ..models.base import ContactLaw, DomainWarning, remembering
+from ..models.base import ContactLaw, remembering, unwarned
 from ..models.kernel import cubic
 from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from .rules import RULES
@@ -163,7 +162,7 @@ def strength_table(law: ContactLaw, pair: Pair) -> StrengthTable:
 def _logs(law: ContactLaw, pairs: Sequence[Pair], depth: Array) -> Logs:
     grid = np.tile(depth, (len(pairs), 1))
     # the table's ends reach beyond what an impact will ask for
-    with warnings.catch_warnings(action="ignore", category=DomainWarning):
+    with unwarned():
         force = law.loading(pairs, grid)
     sphere, flat = law.residual(pairs, grid)
     rest = sphere + flat

@@ -10,7 +10,6 @@ the exponent of unloading.
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,7 +17,7 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.material import Material, Pair
-from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
+from .base import ContactLaw, Domain, Kernels, Standing, unwarned
 from .closed_form import contact
 from .driver import Depths, depths_of
 from .fitted import ClosedForm, bodies_of
@@ -130,7 +129,7 @@ def _columns(law: ContactLaw, pair: Pair, D: Array) -> tuple[Array, ...]:
     """F/(E' R^2), a/R, permanent part, the sphere's part of it, exponent of unloading at D."""
     depth = D * pair.R
     # the grid begins and ends outside of what impacts ask for
-    with warnings.catch_warnings(action="ignore", category=DomainWarning):
+    with unwarned():
         force = law.loading(pair, depth)
     sphere, flat = law.residual(pair, depth)
     rest = sphere + flat

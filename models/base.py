@@ -18,8 +18,10 @@ from __future__ import annotations
 
 import copy
 import math
+import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import lru_cache
@@ -50,6 +52,13 @@ force, radius or residual depth jump up; the law without a yield strength is not
 
 class DomainWarning(UserWarning):
     """A law was evaluated outside the range that its source gives."""
+
+
+@contextmanager
+def unwarned() -> Iterator[None]:
+    """Evaluate laws without `DomainWarning`, where the doubt is told otherwise or is on purpose."""
+    with warnings.catch_warnings(action="ignore", category=DomainWarning):
+        yield
 
 
 class Kernels(NamedTuple):

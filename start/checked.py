@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, cast, overload
 
 from numpy.typing import ArrayLike
-from pydantic import TypeAdapter, ValidationError
 
 from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
@@ -16,15 +15,13 @@ from ..core.inputs.materials import entry_named
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import STRAINS, STRENGTHS, MaterialTable, Quantity, Radius, quantities
+from ..core.rig import RADII, STRAINS, STRENGTHS, MaterialTable, quantities
 from .case_file import read_flow_curve
 
 FlowLike = Flow | FlowCurve | str | Path | ArrayLike
 """A flow law, a curve, its file, or strains and stresses: two rows, or an array of two columns."""
 
 _ROWS = "(strains, stresses), or an array of shape (n, 2), from a strain of 0 on"
-
-_RADIUS: TypeAdapter[Quantity] = TypeAdapter(Radius)
 
 
 class _Checked(type):
@@ -143,11 +140,8 @@ would be 0.01)
                 raise InputError(repr(body), source="Pair", key=key, allowed="a Material")
         radius = one_number(R, source="Pair", key="R")
         pair = Bodies(sphere, flat, radius)
-        try:
-            _RADIUS.validate_python(radius)
-        except ValidationError as mistake:
-            allowed = mistake.errors()[0]["msg"].removeprefix("Value error, ")
-            raise InputError(f"{R:g}", source="Pair", key="R", allowed=allowed) from None
+        if wanted := RADII.wanted(radius):
+            raise InputError(f"{R:g}", source="Pair", key="R", allowed=wanted)
         return cast("Self", pair)
 
 

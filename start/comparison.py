@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,8 +16,8 @@ from ..core.inputs.input_file import path_of
 from ..core.material import Pair
 from ..core.output import figure
 from ..core.tables import frame, html_table, text_table
-from ..models import LAWS, DomainWarning, law_named
-from ..models.base import ContactLaw
+from ..models import LAWS, law_named
+from ..models.base import ContactLaw, unwarned
 from ..models.choose import Demand, demand, follows_flow, past_curves, strains_under
 from .case_file import metal_keys, read_pair
 from .judged import CURVE_POINTS, ELASTIC, USABLE, Departure, Reference, judged
@@ -122,8 +121,40 @@ class LawComparison:
         return frame(row._asdict() for row in self.rows)
 
     def plot(self) -> Figure:
-        """Return force over Hertz's, mean pressure, contact radius and residual depth."""
-        return drawn(self)
+        """Return force over Hertz's, mean pressure, contact radius and residual depth.
+
+        The laws to use stand in colour, the others thin and grey.
+        """
+        made, axes = figure(2, 2, size=(10.0, 7.2))
+        pair = self.pair
+        stiffness = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R)
+        names = list(dict.fromkeys(row.law for row in self.rows))
+        others = [name for name in names if name not in self.best]
+        for k, name in enumerate((*others, *reversed(self.best))):
+            x, d, force, a, p, s, f = np.array([r[1:] for r in self.rows if r.law == name]).T
+            look: dict[str, Any] = {"color": "0.75", "lw": 0.9, "label": None if k else "others"}
+            if name in self.best:
+                # a law that hides another lies on it as the thinner line
+                i = self.best.index(name)
+                look = {"color": f"C{i}", "lw": 2.0 + 1.5 * i, "label": name, "zorder": 3.0}
+            for axis, y in zip(
+                axes.flat, (force / (stiffness * d**1.5), p, a / pair.R, (s + f) / d), strict=True
+            ):
+                axis.semilogx(x, y, **look)
+        for axis, label, top in zip(
+            axes.flat,
+            ("force over Hertz's [-]", "pressure over the weaker strength [-]",
+             "contact radius over R [-]", "residual over largest depth [-]"),
+            (1.6, 5.0, None, 1.0), strict=True,
+        ):  # fmt: skip
+            axis.set(xlabel="approach over R [-]", ylabel=label, ylim=(0.0, top))
+            axis.grid(alpha=0.3)
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        axes[0, 0].legend(
+            handles[::-1], labels[::-1], title="best first", fontsize=8, title_fontsize=8
+        )
+        made.suptitle(textwrap.fill(self.finding.replace("\n", "; "), 120), fontsize=10)
+        return made
 
     def __repr__(self) -> str:
         head, cells = self.table()
@@ -211,8 +242,7 @@ def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, 
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
     rows: list[LawRow] = []
     for law in laws:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DomainWarning)  # the table says what is out of range
+        with unwarned():
             force, a = law.loading(pair, depth), law.contact_radius(pair, depth)
             pressure = law.hardness(pair, depth) / scale
             sphere, flat = law.residual(pair, depth)
@@ -221,35 +251,3 @@ def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, 
         columns = (depth / pair.R, depth, force, a, pressure, sphere, flat)
         rows += [LawRow(law.name, *map(float, row)) for row in zip(*columns, strict=True)]
     return tuple(rows)
-
-
-def drawn(found: LawComparison) -> Figure:
-    """Draw the laws to use in colour, the others thin and grey."""
-    made, axes = figure(2, 2, size=(10.0, 7.2))
-    pair = found.pair
-    stiffness = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R)
-    names = list(dict.fromkeys(row.law for row in found.rows))
-    others = [name for name in names if name not in found.best]
-    for k, name in enumerate((*others, *reversed(found.best))):
-        x, d, force, a, p, s, f = np.array([r[1:] for r in found.rows if r.law == name]).T
-        look: dict[str, Any] = {"color": "0.75", "lw": 0.9, "label": None if k else "others"}
-        if name in found.best:
-            # a law that hides another lies on it as the thinner line
-            i = found.best.index(name)
-            look = {"color": f"C{i}", "lw": 2.0 + 1.5 * i, "label": name, "zorder": 3.0}
-        for axis, y in zip(
-            axes.flat, (force / (stiffness * d**1.5), p, a / pair.R, (s + f) / d), strict=True
-        ):
-            axis.semilogx(x, y, **look)
-    for axis, label, top in zip(
-        axes.flat,
-        ("force over Hertz's [-]", "pressure over the weaker strength [-]",
-         "contact radius over R [-]", "residual over largest depth [-]"),
-        (1.6, 5.0, None, 1.0), strict=True,
-    ):  # fmt: skip
-        axis.set(xlabel="approach over R [-]", ylabel=label, ylim=(0.0, top))
-        axis.grid(alpha=0.3)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    axes[0, 0].legend(handles[::-1], labels[::-1], title="best first", fontsize=8, title_fontsize=8)
-    made.suptitle(textwrap.fill(found.finding.replace("\n", "; "), 120), fontsize=10)
-    return made

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.inputs.input_file import path_of
 from ..core.observables import OBSERVABLES
+from ..core.output import panels
 from ..core.tables import frame, html_table
 from ..discrepancy import Mechanism, Verdict
 from ..discrepancy import diagnose as verdict_of
@@ -51,7 +52,30 @@ class Diagnosis:
 
     def plot(self) -> Figure:
         """Return measured beside simulated, a panel an observable."""
-        return _drawn(self.story)
+        story = self.story
+        names = list(dict.fromkeys(point.observable for point in story.points))
+        figure, axes = panels(len(names))
+        against = story.against[0]
+        stated, without, found = story.series
+        for axis, name in zip(axes, names, strict=True):
+            points = sorted(
+                (p for p in story.points if p.observable == name), key=lambda p: p.x[against.key]
+            )
+            x = [p.x[against.key] for p in points]
+            bars = [[p.measured - p.low for p in points], [p.high - p.measured for p in points]]
+            axis.errorbar(x, [p.measured for p in points], bars, fmt="ko", ms=4, label="measured")
+            axis.plot(x, [p.as_stated for p in points], ".", c="0.6", label=stated)
+            axis.plot(x, [p.best_without for p in points], "C0s", ms=4, mfc="w", label=without)
+            if any(math.isfinite(p.with_verdict) for p in points):
+                axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=found)
+            axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
+            axis.grid(alpha=0.3)
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", fontsize=8)
+        # the legend's lines are longer than one panel is wide; of the finding its first sentence
+        figure.set_figwidth(max(figure.get_figwidth(), 7.5))
+        figure.suptitle(f"{story.finding.partition('. ')[0].rstrip('.')}.", fontsize=10, wrap=True)
+        return figure
 
     def report(self, path: str | Path = "report.html") -> Path:
         """Write the report, with its numbers as JSON and CSV beside it."""
@@ -64,34 +88,6 @@ class Diagnosis:
         parts = ((bar.told, bar.name) for bar in self.story.parts)
         table = html_table(("probability that it takes part", ""), parts)
         return f"<p><b>{html.escape(self.finding)}</b></p>{table}"
-
-
-def _drawn(story: Story) -> Figure:
-    from ..core.output import panels
-
-    names = list(dict.fromkeys(point.observable for point in story.points))
-    figure, axes = panels(len(names))
-    against = story.against[0]
-    stated, without, found = story.series
-    for axis, name in zip(axes, names, strict=True):
-        points = sorted(
-            (p for p in story.points if p.observable == name), key=lambda p: p.x[against.key]
-        )
-        x = [p.x[against.key] for p in points]
-        bars = [[p.measured - p.low for p in points], [p.high - p.measured for p in points]]
-        axis.errorbar(x, [p.measured for p in points], bars, fmt="ko", ms=4, label="measured")
-        axis.plot(x, [p.as_stated for p in points], ".", c="0.6", label=stated)
-        axis.plot(x, [p.best_without for p in points], "C0s", ms=4, mfc="w", label=without)
-        if any(math.isfinite(p.with_verdict) for p in points):
-            axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=found)
-        axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
-        axis.grid(alpha=0.3)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", fontsize=8)
-    # the legend's lines are longer than one panel is wide; of the finding its first sentence
-    figure.set_figwidth(max(figure.get_figwidth(), 7.5))
-    figure.suptitle(f"{story.finding.partition('. ')[0].rstrip('.')}.", fontsize=10, wrap=True)
-    return figure
 
 
 def diagnose(

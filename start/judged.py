@@ -8,7 +8,6 @@ largest departure of the three is the law's number.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
@@ -20,8 +19,8 @@ from ..campaigns.parts import published_parts
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
-from ..models import LAWS, DomainWarning
-from ..models.base import ContactLaw
+from ..models import LAWS
+from ..models.base import ContactLaw, unwarned
 from .measured import loading_work
 from .rules import RULES
 
@@ -122,8 +121,7 @@ def nearest(pair: Pair, *, last: float) -> Reference | None:
 def departure(law: ContactLaw, reference: Reference) -> Departure:
     """Return how far a law is from the finite elements of a pair; a law of another is refused."""
     pair = reference.pair
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", DomainWarning)  # how far it is off is told
+    with unwarned(), np.errstate(all="ignore"):
         force = law.loading(pair, reference.depth)
         peaks = np.array([turn[0] for turn in reference.turns])
         left = np.add(*law.residual(pair, peaks))
@@ -230,7 +228,6 @@ def judged(
 def _from_elastic(law: ContactLaw, pair: Pair, last: float) -> Departure:
     """How far a law's force is from Hertz's with finite strain added, up to Delta/R = `last`."""
     depth = pair.R * last * np.geomspace(1e-2, 1.0, CURVE_POINTS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)  # of metals, none of which yields
+    with unwarned():
         force, judge = law.loading(pair, depth), LAWS["fitted"].loading(pair, depth)
     return _departure(pair.R, (force, judge, depth))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -17,7 +16,7 @@ from ...dynamics.files.second import second_of
 from ...dynamics.mechanisms.asked import SIMULATED
 from ...dynamics.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...dynamics.walk import layout as c
-from ...models.base import DomainWarning
+from ...models.base import unwarned
 from ..unknowns.wrong_number import wrong_factors
 from .cells import compared
 from .problem import Problem
@@ -76,8 +75,7 @@ def _struck(scenes: list[Scene]) -> Array:
     # beyond the data that the law was fitted to.
     step = max(2, len(scenes) // _THREAD_FROM)
     parts = [scenes[k::step] for k in range(step)]
-    with warnings.catch_warnings(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
-        warnings.simplefilter("ignore", DomainWarning)
+    with unwarned(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
         found = list(pool.map(lambda part: strike_batch(part, ACCURACY), parts))
     rows = np.empty((len(scenes), found[0].shape[1]))
     for k, struck in enumerate(found):

@@ -19,7 +19,6 @@ K. Sargsyan, X. Huan, H. N. Najm, Int. J. Uncertain. Quantif. 9 (2019) 365: embe
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -33,7 +32,7 @@ from ...dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...dynamics.mechanisms.arithmetic import deepest
 from ...dynamics.strength import NODES, strength_table
 from ...models.anchored import AnchoredLaw
-from ...models.base import DomainWarning
+from ...models.base import unwarned
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
 from ..rules import RULES
@@ -246,9 +245,8 @@ def _of_law(scene: Scene, lost: Array) -> dict[str, Array]:
     if law.name == "hertz":
         # exact but for what Hertz leaves out: the finite depth of the contact
         return dict.fromkeys(_KINDS, np.zeros(NODES)) | {"force": np.full(NODES, 0.003)}
-    with warnings.catch_warnings():
+    with unwarned():
         # the nodes' ends reach beyond what an impact will ask for
-        warnings.simplefilter("ignore", DomainWarning)
         known = law.uncertainty(pair, pair.R * np.exp(_GRID))
     return {
         "force": known.force,

@@ -17,7 +17,6 @@ a larger one that is the weaker 4.7 and 2.1 % less at R_2 = R_1 and 2 R_1; in a 
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +26,7 @@ from ...core.inputs.rig_numbers import RigNumbers, solid_inertia
 from ...core.inputs.second_sphere import StruckSphere
 from ...core.material import Pair
 from ...models import LAWS
-from ...models.base import ContactLaw, DomainWarning
+from ...models.base import ContactLaw, unwarned
 from ...models.turned import SimilarLaw, as_made, similar, turned
 from ..scene import Scene, Striker
 
@@ -89,7 +88,7 @@ class SecondSphere(StruckSphere):
         flat = 1.0 - (own.scale(there) - 1.0) / (own.ratio - 1.0)
         if self.radius > 0.0 and flat > 0.0:
             fitted, equal = LAWS["fitted"], similar(LAWS["fitted"], 2.0)
-            with warnings.catch_warnings(action="ignore", category=DomainWarning):
+            with unwarned():
                 either = equal.loading(there.turned, depth) / fitted.loading(there, depth) - 1.0
             kept = (2.0 * self._other(pair.R)) ** 2 * np.abs(either)
         else:
@@ -111,7 +110,7 @@ class SecondSphere(StruckSphere):
         depth = np.asarray(delta, dtype=float)
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(depth)
-        with warnings.catch_warnings(action="ignore", category=DomainWarning):
+        with unwarned():
             # a rigid partner is beyond the strengths that were fitted
             ball, as_flat = LAWS["fitted"].residual(pair, depth)
             as_sphere, other = LAWS["fitted"].residual(pair.turned, depth)
@@ -137,7 +136,7 @@ def radius_error(pair: Pair, delta: float | Array, ratio: float) -> Array:
     both = Pair(pair.weaker, pair.weaker, pair.R)
     # a film can leave no depth at all
     depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
-    with warnings.catch_warnings(action="ignore", category=DomainWarning):
+    with unwarned():
         one, two = (
             law.loading(both, depth) for law in (LAWS["fitted"], similar(LAWS["fitted"], ratio))
         )

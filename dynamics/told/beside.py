@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import numpy.typing as npt
 
@@ -11,7 +9,7 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.material import Pair
 from ...models import law_named
-from ...models.base import ContactLaw, DomainWarning
+from ...models.base import ContactLaw, unwarned
 from ...models.fitted import ClosedForm
 from ...models.turned import as_made
 from ...models.uncertainty import Uncertainty
@@ -20,8 +18,7 @@ from ...models.uncertainty import Uncertainty
 def error_of(law: ContactLaw, pair: Pair, depth: Array) -> Uncertainty:
     """How far `law` may be off, by itself or, where it states no error, by the fitted law."""
     law, pair = as_made(law, pair)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+    with unwarned(), np.errstate(all="ignore"):
         try:
             return law.uncertainty(pair, depth)
         except InputError:  # a published law

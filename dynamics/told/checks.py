@@ -18,7 +18,7 @@ from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...core.inputs.materials import materials, unlisted
 from ...core.rig import TABOR, Quantity
-from ...models.base import ContactLaw, DomainWarning
+from ...models.base import ContactLaw, DomainWarning, unwarned
 from ...models.choose import demand, follows_flow
 from ...models.turned import as_made
 from ..result import Impact
@@ -53,8 +53,7 @@ _WORTH_A_LINE = 1e-3
 def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
     """Return what the file leaves open and the table of materials, or a plate's bending, fills."""
     scene = setup.scene(law)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+    with unwarned():
         lacks = lacking(setup, scene, found)
         waves = None
         if setup.file.target.thickness_m and "support" not in setup.content.get("impact", {}):
@@ -85,8 +84,7 @@ def checks(
             *_repeats(setup), *_resting(scene, found), *bending(setup, scene, found),
             *_mechanisms(setup, law, found),
         ]  # fmt: skip
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+    with unwarned():
         parts = (
             _repeats(setup), _deep(setup, scene, found), _onset(setup, scene, found),
             flow_checks(setup, scene, found, lacks), _either(scene, found),

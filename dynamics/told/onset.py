@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...core.arrays import Array
 from ...core.material import Pair
-from ...models.base import DomainWarning
+from ...models.base import unwarned
 from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
 from ..scene import Scene
@@ -104,7 +103,7 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
         return math.nan
     depth = np.geomspace(1e-3 * peak, peak, _PRESSURE_POINTS)
     # the doubt about a law has its own line
-    with warnings.catch_warnings(action="ignore", category=DomainWarning):
+    with unwarned():
         stated = scene.law.hardness(scene.pair, depth)
         return float(np.max(stated * _harder(scene, depth)))
 

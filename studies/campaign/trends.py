@@ -6,7 +6,6 @@ and laws, and the whole list in the order of the text.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,7 +14,8 @@ import numpy as np
 from ...campaigns import CaseRecord
 from ...campaigns.cases.pairs import pair_of, table_2_1
 from ...core.material import Pair
-from ...models import LAWS, DomainWarning
+from ...models import LAWS
+from ...models.base import unwarned
 from ...models.published.ghaednia import share_of_sphere
 from .claims import CLAIMS, FEWEST, Finding
 from .sweep import DEPTH, Sweep, at_depth, by_pair, groups_of, sweeps
@@ -132,8 +132,7 @@ def _other_laws(stored: Mapping[str, CaseRecord]) -> Trend:
     ):
         if values is None:
             break
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DomainWarning)
+        with unwarned():
             force = float(LAWS[name].loading(pair, np.array([depth * pair.R]))[0])
         off = force / (pair.E_reduced * pair.R**2) / values[3] - 1.0
         findings[name] = (low <= off <= high, f"{off:+.0%}")
@@ -148,8 +147,7 @@ def _of_the_thesis(number: int, ratio: float, name: str) -> float:
     pair, law = table_2_1(number, ratio), LAWS["ghaednia"]
     if name == "share":
         return float(share_of_sphere(DEPTH, pair.E_reduced / pair.Sy_min, ratio, 1.0))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)
+    with unwarned():
         D = np.array([DEPTH * pair.R])
         if name == "radius":
             return float(law.contact_radius(pair, D)[0] / pair.R)

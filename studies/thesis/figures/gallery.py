@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from ....campaigns import CaseRecord, read_curves, read_published
 from ....core.errors import InputError
 from ....core.output import write_file
 from ....core.tables import markdown
-from ....models import DomainWarning
+from ....models.base import unwarned
 from ...plot import Entry, Picture, Table
 from . import chapter1, chapter2, chapter3, chapter45
 from .names import CHAPTERS
@@ -78,8 +77,7 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
     rests = f"{len(records)} stored cases" if records else "none found beside it"
     drawn: list[Entry] = []
     for chapter in chapters:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DomainWarning)  # the figures leave domains on purpose
+        with unwarned():
             entries = sorted(_PICTURES[chapter](records), key=_order)
         for entry in entries:
             if isinstance(entry, Picture):
