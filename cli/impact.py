@@ -111,9 +111,7 @@ def _sweep(
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()
     stds = {} if exact or len(first) > MOST_SWEPT else swept_stds(setup, laws[0], first)
-    for other in others:
-        first = first.joined(other)
-    first = first.with_stds(stds)
+    first = first.joined(*others).with_stds(stds)
     scene, depths = setup.scene(laws[0]), curves[laws[0].name]["peak_depth_m"]
     told = [*too_deep(laws[0], scene.pair, depths)]
     told += [*swept_above_one(first), *swept_walls(scene, first)]

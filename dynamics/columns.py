@@ -67,9 +67,9 @@ class Impacts:
         head, *rows = self._shown()
         return html_table(head, rows, title=f"{len(self)} impacts")
 
-    def joined(self, other: Impacts) -> Impacts:
-        """Return these rows and those of `other`, which has the same columns."""
-        columns = {k: np.concatenate([v, other[k]]) for k, v in self.columns.items()}
+    def joined(self, *others: Impacts) -> Impacts:
+        """Return these rows and those of `others`, which have the same columns."""
+        columns = {k: np.concatenate([v, *(o[k] for o in others)]) for k, v in self.columns.items()}
         return Impacts(columns, self.swept)
 
     def with_stds(self, stds: Mapping[str, Array]) -> Impacts:

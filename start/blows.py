@@ -140,9 +140,7 @@ def sweep(
     laws = _wanted(law, chosen)
     chosen.check_laws(laws)
     found, *others = (chosen.swept(one) for one in laws)
-    for other in others:
-        found = found.joined(other)
-    return replace(found, swept=chosen.sweep.swept)
+    return replace(found.joined(*others), swept=chosen.sweep.swept)
 
 
 def _stated(given: dict[str, Any]) -> dict[str, Any]:

@@ -123,12 +123,10 @@ def departure(law: ContactLaw, reference: Reference) -> Departure:
     pair = reference.pair
     with unwarned(), np.errstate(all="ignore"):
         force = law.loading(pair, reference.depth)
-        peaks = np.array([turn[0] for turn in reference.turns])
+        peaks, dents, given = np.array(reference.turns).reshape(-1, 3).T
         left = np.add(*law.residual(pair, peaks))
         back = [_restitution(law, pair, d, float(r)) for d, r in zip(peaks, left, strict=True)]
-        dents = np.array([turn[1] for turn in reference.turns])
         seen = dents > RULES.least_dent * peaks
-        given = np.array([turn[2] for turn in reference.turns])
         return _departure(
             pair.R, (force, reference.force, reference.depth),
             (left[seen], dents[seen], peaks[seen]), (np.array(back), given, peaks),

@@ -98,29 +98,28 @@ class Band:
 
 def band_of(setup: Setup, law: ContactLaw) -> Band:
     """Return the band of a set-up's last blow by one law; an empty one if that did not end."""
-    parts: dict[str, dict[str, float]] = {}
-    found_now = last_blow(setup, law)
-    if not found_now.outcome.completed:
-        return Band(parts)
-    for key, share, up, down in _shifted(setup, law):
-        blows = [(one.scene(law), last_blow(one, law)) for one in (up, down)]
-        high, low = ({**_values(b), PRESSURE: largest_mean_pressure(s, b)} for s, b in blows)
-        parts[key] = {n: 0.5 * (high[n] - low[n]) / share for n in high}
+    found = last_blow(setup, law)
+    if not found.outcome.completed:
+        return Band({})
+
+    def ended(one: Setup) -> dict[str, float]:
+        blow = last_blow(one, law)
+        return {**_values(blow), PRESSURE: largest_mean_pressure(one.scene(law), blow)}
+
     scene = setup.scene(law)
-    of_law, of_metal = _sizes_of(setup, scene, found_now)
-    slopes = _slopes(
-        _NUMBERS, _acting([(of_law, of_metal)]),
-        lambda change: _values(last_blow(setup, law, change)),
+    sizes = _sizes_of(setup, scene, found)
+    parts = _of_inputs(setup, law, (*_NUMBERS, PRESSURE), ended) | _of_law(
+        np.array(sizes), _NUMBERS, lambda change: _values(last_blow(setup, law, change)),
+        {name: getattr(found, name) for name in ("residual_flat_m", "residual_sphere_m")},
+        found.peak_depth_m,
     )  # fmt: skip
-    pressure = largest_mean_pressure(scene, found_now)
-    for name, sizes in ((LAW, of_law), (METALS, of_metal)):
-        parts[name] = _combined(sizes, slopes, found_now)
-        parts[name][PRESSURE] = pressure * math.hypot(sizes.force, 2.0 * sizes.radius)
-    finite = {
-        part: {n: x for n, x in changes.items() if math.isfinite(x)}
+    pressure = largest_mean_pressure(scene, found)
+    for name, own in zip((LAW, METALS), sizes, strict=True):
+        parts[name][PRESSURE] = pressure * math.hypot(own.force, 2.0 * own.radius)
+    return Band({
+        part: {n: float(x) for n, x in changes.items() if math.isfinite(x)}
         for part, changes in parts.items()
-    }
-    return Band(finite)
+    })  # fmt: skip
 
 
 def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
@@ -304,26 +303,42 @@ def _moving(k: int, step: float) -> Change:
     return change
 
 
-def _acting(sizes: Sequence[tuple[_Sizes, _Sizes]]) -> tuple[bool, ...]:
-    """Which of force, recovery and exponent are off at all."""
-    return tuple(any(one[k] > 0.0 for both in sizes for one in both) for k in range(3))
+def _of_inputs(
+    setup: Setup, law: ContactLaw, names: Sequence[str], ended: Callable[[Setup], Any]
+) -> dict[str, dict[str, Any]]:
+    """Change of each number by one standard deviation of each uncertain input, by its key.
 
-
-def _slopes(
-    names: Sequence[str], acting: Sequence[bool], moved: Callable[[Change], Any], none: Any = 0.0
-) -> list[dict[str, Any]]:
-    """Change of each number by the logarithm of force and recovery, and by the exponent.
-
-    `moved` gives the numbers by name with the force changed; `none` stands for what is not off.
+    `ended` gives a set-up's numbers by name.
     """
-    slopes: list[dict[str, Any]] = []
-    for k, acts in enumerate(acting):
-        if not acts:
-            slopes.append(dict.fromkeys(names, none))
-            continue
+    parts = {}
+    for key, share, up, down in _shifted(setup, law):
+        high, low = ended(up), ended(down)
+        parts[key] = {n: 0.5 * (high[n] - low[n]) / share for n in names}
+    return parts
+
+
+def _of_law(
+    sizes: Array, names: Sequence[str], moved: Callable[[Change], Any], left: Mapping[str, Any],
+    peak: Any,
+) -> dict[str, dict[str, Any]]:  # fmt: skip
+    """Standard deviation of each number by the law and by the metal.
+
+    `sizes` (2, 6, ...) are `_Sizes` of both; `moved` gives the numbers (...) by name with the force
+    changed; `left` (...) are the dents among them, at the depths `peak`. Force, recovery, exponent
+    and crater are independent; a law gives a body of no strength no dent.
+    """
+    slopes: list[dict[str, Any]] = [dict.fromkeys(names, 0.0)] * 3
+    for k in np.flatnonzero([(sizes[:, k] > 0.0).any() for k in range(3)]).tolist():
         high, low = (moved(_moving(k, step)) for step in (RULES.band_step, -RULES.band_step))
-        slopes.append({n: (high[n] - low[n]) / (2.0 * RULES.band_step) for n in names})
-    return slopes
+        slopes[k] = {n: (high[n] - low[n]) / (2.0 * RULES.band_step) for n in names}
+    parts: dict[str, dict[str, Any]] = {}
+    for part, own in zip((LAW, METALS), map(_Sizes._make, sizes), strict=True):
+        by = list(zip(own[:3], slopes, strict=True))
+        parts[part] = {n: np.sqrt(sum((s * slope[n]) ** 2 for s, slope in by)) for n in names}
+        for name, dent in left.items():
+            off = np.where(dent > 0.0, np.hypot(own.crater * dent, own.share * peak), 0.0)
+            parts[part][name] = np.hypot(parts[part][name], off)
+    return parts
 
 
 def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
@@ -333,47 +348,15 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
     """
     if not all(found["outcome"] == "completed"):
         return {}
-    variance = {name: np.zeros(len(found)) for name in SWEPT}
-    for _, share, up, down in _shifted(setup, law):
-        ends = up.swept(law), down.swept(law)
-        for name in SWEPT:
-            variance[name] += (0.5 * (ends[0][name] - ends[1][name]) / share) ** 2
-    scene, rows = setup.scene(law), list(found.rows())
-    sizes = [
-        _sizes_of(setup, scene, SimpleNamespace(**values, residual_flat_m=values[_CRATER]))
-        for values in rows
-    ]
-    slopes = _slopes(
-        SWEPT, _acting(sizes), lambda change: setup.swept(law, change=change), np.zeros(len(rows))
-    )
-    for row, values in enumerate(rows):
-        for part in sizes[row]:
-            for name in SWEPT:
-                by = (s * slope[name][row] for s, slope in zip(part, slopes, strict=False))
-                variance[name][row] += sum(x * x for x in by)
-            variance[_CRATER][row] += _parted(part, values[_CRATER], values["peak_depth_m"]) ** 2
-        if not compared(law, scene.pair, values["peak_depth_m"]):
-            for name in SWEPT:
-                variance[name][row] = math.nan
-    return {name: np.sqrt(x) for name, x in variance.items()}
-
-
-def _combined(sizes: _Sizes, slopes: list[dict[str, float]], found: Impact) -> dict[str, float]:
-    """Standard deviation of each field; force, recovery, exponent and crater are independent."""
-    by = (sizes.force, sizes.recovery, sizes.exponent)
-    out = {
-        n: math.sqrt(sum((s * slope[n]) ** 2 for s, slope in zip(by, slopes, strict=True)))
-        for n in _NUMBERS
+    scene, peak = setup.scene(law), found["peak_depth_m"]
+    each = (SimpleNamespace(**row, residual_flat_m=row[_CRATER]) for row in found.rows())
+    sizes = np.stack([_sizes_of(setup, scene, one) for one in each], axis=-1)
+    parts = _of_inputs(setup, law, SWEPT, lambda one: one.swept(law)) | _of_law(
+        sizes, SWEPT, lambda change: setup.swept(law, change=change), {_CRATER: found[_CRATER]},
+        peak,
+    )  # fmt: skip
+    known = [compared(law, scene.pair, depth) for depth in peak.tolist()]
+    return {
+        name: np.where(known, np.sqrt(sum(part[name] ** 2 for part in parts.values())), math.nan)
+        for name in SWEPT
     }
-    for name in ("residual_flat_m", "residual_sphere_m"):
-        own = _parted(sizes, getattr(found, name), found.peak_depth_m)
-        out[name] = math.hypot(out[name], own)
-    return out
-
-
-def _parted(sizes: _Sizes, left: float, peak: float) -> float:
-    """How far off a body's dent is beside the force's part, by the sum of both and its share [m].
-
-    A law gives a body of no strength no dent.
-    """
-    return math.hypot(sizes.crater * left, sizes.share * peak) if left > 0.0 else 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,13 +66,8 @@ def _left(blow: Blow, *, exact: bool) -> tuple[str, list[LeftSurface]]:
     return "", []
 
 
-class _Scale(NamedTuple):
-    factor: float
-    unit: str
-
-
-def _scale(length: float) -> _Scale:
-    return _Scale(1e3, "mm") if length >= 1e-3 else _Scale(1e6, "um")
+def _scale(length: float) -> tuple[float, str]:
+    return (1e3, "mm") if length >= 1e-3 else (1e6, "um")
 
 
 def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
@@ -137,7 +132,8 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
         axis.axvline(side, color="0.35", ls=":", lw=0.8)
     heights = 1e6 * np.concatenate([[0.0], *(s.height for s in left)])
     low, high = float(heights.min()), float(heights.max())
-    stretch = _stretch((high - low) / (2e6 / scale * reach))
+    # what is flat is drawn higher than wide, in one digit
+    stretch = max(float(f"{0.55 / ((high - low) / (2e6 / scale * reach)):.1g}"), 1.0)
     stretched = f"heights drawn {stretch:g} times too large"
     axis.set(
         xlim=(-reach, reach), xlabel=f"from the middle [{unit}]; dotted: the contact",
@@ -149,11 +145,6 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
     axis.title.set_fontsize(8)
     axis.grid(alpha=0.3)
     axis.legend(fontsize=7, loc="lower right")
-
-
-def _stretch(tall: float) -> float:
-    """By how much heights are drawn larger than widths, in one digit, where they are flat."""
-    return max(float(f"{0.55 / tall:.1g}"), 1.0)
 
 
 def _draw_curves(
