@@ -84,9 +84,12 @@ def run(
 
     def ended(step: Any) -> None:
         progress.step(step)
-        if step.done and step.status.done in _PICTURED:
+        done = step.status.done
+        if step.done and done in _PICTURED:
+            many = "the first case" if done == 1 else f"{done} cases"
             for picture in _draw(chosen, out):
-                progress.console.print(f"{_so_far(step.status)}: {picture}")
+                told = f"picture of {many}, of {step.status.designed}: {picture}"
+                progress.console.print(told)
 
     try:
         with in_use(out / "cases") as shared, progress.bar:
@@ -127,11 +130,6 @@ def _share(part: str) -> Any:
         allowed = "K/N, this run's number and how many share the sweep: 2/3"
         raise misused(f"{part!r}", key="--part", allowed=allowed)
     return Share(int(number), int(of))
-
-
-def _so_far(status: Any) -> str:
-    done = "the first case" if status.done == 1 else f"{status.done} cases"
-    return f"picture of {done}, of {status.designed}"
 
 
 @app.command()
@@ -237,7 +235,6 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
 
 
 def _done(design: Any, store: Any) -> list[Any]:
-    """The completed cases of a design."""
     from ..campaigns import distinct_cases
 
     keys = distinct_cases(design)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -135,16 +136,14 @@ def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:
     phases = [("load", solution.loading)]
     phases += [(f"unload-{i}", u.curve) for i, u in enumerate(solution.unloadings, start=1)]
     named = [name for column in _COLUMNS for name in (column, f"{column}_uncertainty")]
-    rows = []
+    rows: list[tuple[Any, ...]] = []
     for phase, c in phases:
         values = _columns(c, pair.Sy_min)
         # the table of mesh errors is of loading only
-        errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else None
-        for i in range(len(c.delta)):
-            row = [phase, c.delta[i] / pair.R]
-            for k, column in enumerate(values):
-                row += [column[i], errors[k][i] if errors else ""]
-            rows.append(row)
+        none = [[""] * len(c.delta)] * len(values)
+        errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else none
+        pairs = chain.from_iterable(zip(values, errors, strict=True))
+        rows += [(phase, *row) for row in zip(c.delta / pair.R, *pairs, strict=True)]
     return write_file(path, csv_text(rows, header=["phase", "delta_over_R", *named]))
 
 

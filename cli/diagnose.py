@@ -67,7 +67,7 @@ def diagnose(
     recordings = read(place)
     out = out or writable_folder(report_folder(place), key="--out")
     from ..discrepancy import diagnose as run
-    from ..discrepancy.report import lines
+    from ..discrepancy.report import lines, write_report
 
     show = _progress(quiet=quiet)
     if not quiet:
@@ -77,7 +77,9 @@ def diagnose(
         progress=show,
     )  # fmt: skip
     show("")
-    written = _written(verdict, out, report=report)
+    text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
+    written = [write_file(out / "verdict.json", text + "\n")]
+    written += write_report(verdict, out / "report.html") if report else ()
     for line in lines(verdict):
         say(line)
     if solve:
@@ -111,14 +113,6 @@ def _progress(*, quiet: bool) -> Callable[[str], None]:
             typer.echo(told, err=True)
 
     return show
-
-
-def _written(verdict: Verdict, out: Path, *, report: bool) -> list[Path]:
-    from ..discrepancy.report import write_report
-
-    text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
-    found = [write_file(out / "verdict.json", text + "\n")]
-    return [*found, *write_report(verdict, out / "report.html")] if report else found
 
 
 def _solved(verdict: Verdict, out: Path, show: Callable[[str], None]) -> list[Path]:

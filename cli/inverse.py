@@ -11,6 +11,15 @@ from ..core.inputs.templates import INVERSE, write_new
 from .shared.places import folder_option, misused, refuse_beside
 from .shared.terminal import new_console, show_table
 
+_SHOWN = (
+    ("alpha", "alpha", 1.0, "{:.4f}"),
+    ("to last\nparting [ms]", "duration", 1e3, "{:.3f}"),
+    ("mean\nforce [N]", "mean_force", 1.0, "{:.0f}"),
+    ("back at\nsurface [ms]", "return_duration", 1e3, "{:.3f}"),
+    ("mean\nforce [N]", "return_force", 1.0, "{:.0f}"),
+)
+"""Head of a column, and what of a trial stands in it: name, scale, form."""
+
 
 def inverse(
     context: typer.Context,
@@ -36,9 +45,12 @@ def inverse(
 
     console = new_console()
     rows = read_inverse(file)
-    head, cells = _shown(rows)
     show_table(
-        console, head, cells,
+        console, ("trial", *(head for head, *_ in _SHOWN)),
+        [
+            (row.name, *(_cell(row, name, scale, form) for _, name, scale, form in _SHOWN))
+            for row in rows
+        ],
         title="duration and mean force from depth, sliding length and restitution",
     )  # fmt: skip
     console.print(
@@ -50,23 +62,6 @@ def inverse(
     written = out / f"{file.stem}-inverse.csv"
     write_csv(written, [_csv_row(row) for row in rows])
     console.print(f"written: {written}", soft_wrap=True)
-
-
-def _shown(rows: list[Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """The table of what is inferred."""
-    head: tuple[str, ...] = (
-        "trial", "alpha", "to last\nparting [ms]", "mean\nforce [N]",
-        "back at\nsurface [ms]", "mean\nforce [N]",
-    )  # fmt: skip
-    cells: list[tuple[str, ...]] = [
-        (
-            row.name, _cell(row, "alpha", 1.0, "{:.4f}"), _cell(row, "duration", 1e3, "{:.3f}"),
-            _cell(row, "mean_force", 1.0, "{:.0f}"), _cell(row, "return_duration", 1e3, "{:.3f}"),
-            _cell(row, "return_force", 1.0, "{:.0f}"),
-        )
-        for row in rows
-    ]  # fmt: skip
-    return head, cells
 
 
 def _cell(row: Any, name: str, scale: float, form: str) -> str:

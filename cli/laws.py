@@ -21,8 +21,6 @@ _YIELDS = {"flattening": "sphere", "indentation": "flat", "either": "either"}
 
 
 class _Laws(Commands):
-    """Alone: the list."""
-
     alone = ("list",)
 
 

@@ -11,10 +11,12 @@ from ..core.inputs.materials import Entry, entry_named, materials, sources
 from .shared.terminal import entry as told
 from .shared.terminal import wrapped
 
-_UNITS = {"E_Pa": (1e9, "GPa"), "Sy_Pa": (1e6, "MPa"), "hardness_Pa": (1e9, "GPa"),
-          "density_kg_m3": (1.0, "kg/m^3"), "nu": (1.0, "")}  # fmt: skip
-_WORDS = {"E_Pa": "Young's modulus", "nu": "Poisson's ratio", "Sy_Pa": "yield strength",
-          "hardness_Pa": "hardness", "density_kg_m3": "density"}  # fmt: skip
+_SHOWN = {
+    "E_Pa": ("Young's modulus", 1e9, "GPa"), "nu": ("Poisson's ratio", 1.0, ""),
+    "Sy_Pa": ("yield strength", 1e6, "MPa"), "hardness_Pa": ("hardness", 1e9, "GPa"),
+    "density_kg_m3": ("density", 1.0, "kg/m^3"),
+}  # fmt: skip
+_LISTED = ("E_Pa", "Sy_Pa", "hardness_Pa")
 
 
 def show_materials(
@@ -36,23 +38,21 @@ def show_materials(
         except InputError as error:
             raise error.at("command line", "NAME") from None
     for one in found:
-        listed = ", ".join(_number(one, key) for key in ("E_Pa", "Sy_Pa", "hardness_Pa")
-                           if key in one.numbers)  # fmt: skip
+        listed = ", ".join(
+            f"{word} {one.numbers[key]['value'] / factor:.4g} {unit}"
+            for key, (word, factor, unit) in _SHOWN.items()
+            if key in one.numbers and key in _LISTED
+        )
         told(one.name, f"{one.title}: {listed}.")
     typer.echo("\nIn a file: material = NAME; what the file states goes first.")
-
-
-def _number(one: Entry, key: str) -> str:
-    given, (factor, unit) = one.numbers[key], _UNITS[key]
-    return f"{_WORDS[key]} {given['value'] / factor:.4g} {unit}".rstrip()
 
 
 def _show(one: Entry) -> None:
     typer.echo(f"{one.name}: {one.title} ({one.kind}{one.also and f'; {one.also}'})\n")
     for key, given in one.numbers.items():
-        factor, unit = _UNITS[key]
+        word, factor, unit = _SHOWN[key]
         spread = f"{given['value'] / factor:.4g} +- {given['std'] / factor:.2g} {unit}".rstrip()
-        told(_WORDS[key], f"{spread}: {given['source']}.")
+        told(word, f"{spread}: {given['source']}.")
     for name, law in one.laws.items():
         numbers = ", ".join(f"{k} = {v}" for k, v in law.items() if k != "source")
         told(name, f"{numbers}: {law['source']}.")

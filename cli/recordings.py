@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated
@@ -137,7 +136,7 @@ def _new_from(
                          strikers=tuple(filter(None, balls)))  # fmt: skip
             still = list(done.notes)
         typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
-        _tell_columns(found, found.left_out)
+        _tell_columns(found)
         if dry_run:
             show_table(new_console(), *found.shown(first or trial_name(sheet)))
     if dry_run:
@@ -192,14 +191,14 @@ def _rows_of(
     told = {"shape": found.shape, "column": "; ".join(columns)}
     store(found.reduced(sheet), place, Row(striker=striker or strikers[0]), kind="sheet",
           options=told)  # fmt: skip
-    _tell_columns(found, found.left_out)
+    _tell_columns(found)
     return place / "trials.csv"
 
 
-def _tell_columns(found: Sheet, notes: Sequence[str]) -> None:
+def _tell_columns(found: Sheet) -> None:
     for header, became in found.columns:
         typer.echo(f"  {header!r}: {became}")
-    for line in notes:
+    for line in found.left_out:
         typer.echo(f"  note: {line}")
 
 

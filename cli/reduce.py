@@ -205,10 +205,10 @@ def _reduce(
     there = [path for path in written if path.is_file()]
     if written[1] in there:
         pictures[name] = written[1]
-    _print(job.file, reduced)
-    for line in lines:
+    told = [f"  {name} = {value}" for name, value in reduced.values.items()]
+    told += [f"  note: {note}" for note in reduced.notes]
+    for line in (f"{job.file}:", *told, *lines, f"written: {', '.join(map(str, there))}"):
         typer.echo(line)
-    typer.echo(f"written: {', '.join(map(str, there))}")
 
 
 @contextlib.contextmanager
@@ -230,11 +230,3 @@ def _named_as_options() -> Iterator[None]:
                 for e in several
             )
         ) from None  # fmt: skip
-
-
-def _print(file: Path, reduced: Any) -> None:
-    typer.echo(f"{file}:")
-    for name, value in reduced.values.items():
-        typer.echo(f"  {name} = {value}")
-    for note in reduced.notes:
-        typer.echo(f"  note: {note}")

@@ -52,7 +52,8 @@ def parts(
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    size = [max(map(_width, column)) + 2 for column in zip(head, *rows, strict=True)]
+    columns = zip(head, *rows, strict=True)
+    size = [max(len(line) for cell in c for line in cell.split("\n")) + 2 for c in columns]
     room = max(width, _NARROWEST) - size[0] - 1
     tables: list[Table] = []
     left = list(range(1, len(head)))
@@ -68,10 +69,6 @@ def parts(
             table.add_row(row[0], *(row[k] for k in taken))
         tables.append(table)
     return tables
-
-
-def _width(cell: str) -> int:
-    return max(map(len, cell.split("\n")))
 
 
 def say(line: str) -> None:

@@ -6,7 +6,7 @@ are the columns, and where they state the time between two samples a column of t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -117,7 +117,12 @@ def _hdf5(path: Path) -> dict[str, list[_Channel]]:
     try:
         with h5py.File(path, "r") as file:
             found: dict[str, list[_Channel]] = {}
-            for place, data in _datasets(file, h5py):
+            places: list[str] = []
+            file.visit(places.append)
+            for place in places:
+                data = file[place]
+                if not (isinstance(data, h5py.Dataset) and data.dtype.kind in "iufb" and data.size):
+                    continue
                 group, _, name = place.rpartition("/")
                 said = {**dict(data.parent.attrs), **dict(data.attrs)}
                 values = _read(data, data.size, path)
@@ -133,15 +138,6 @@ def _hdf5(path: Path) -> dict[str, list[_Channel]]:
         if isinstance(error, InputError):
             raise
         raise _unread(path, error, "an HDF5 file with columns of numbers") from None
-
-
-def _datasets(file: Any, h5py: Any) -> Iterator[tuple[str, Any]]:
-    places: list[str] = []
-    file.visit(places.append)
-    for place in places:
-        data = file[place]
-        if isinstance(data, h5py.Dataset) and data.dtype.kind in "iufb" and data.size:
-            yield place, data
 
 
 def _read(data: Any, size: int, path: Path) -> Array:

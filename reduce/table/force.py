@@ -18,7 +18,7 @@ from .file import Columns
 from .options import TableOptions
 from .picture import draw_pulse
 from .pulse import Pulse, find_pulse
-from .series import Series, series_of
+from .series import Series, no_number, series_of
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
@@ -83,10 +83,11 @@ def _numbers(
         approach = Measured(options.approach_speed_m_s, options.approach_speed_m_s_std)
         values["impact_speed_m_s"] = row["impact_speed_m_s"] = approach
         if change is not None:
-            restitution = _restitution(
-                change, approach, options.gravity_m_s2 * pulse.duration.value
-            )
-            values["restitution"] = row["restitution"] = _possible(restitution, source)
+            # what turns the approach round: the change of speed less what gravity took
+            fall = options.gravity_m_s2 * pulse.duration.value
+            ratio = Measured(change.value - fall, change.std).over(approach)
+            restitution = _possible(Measured(ratio.value - 1.0, ratio.std), source)
+            values["restitution"] = row["restitution"] = restitution
     return values, row
 
 
@@ -96,8 +97,8 @@ def _whole(pulse: Pulse, series: Series, source: str) -> None:
     beside = (series.missed > pulse.start.value - near) & (series.missed < pulse.end.value + near)
     if beside.any():
         raise Refused(
-            f"{series.told()}, {int(beside.sum())} of them in or beside the pulse",
-            source=source,
+            f"{no_number(series.missed.size, series.marks)}, {int(beside.sum())} of them in or "
+            "beside the pulse", source=source,
             allowed="a whole pulse: a range that it does not reach, no lost samples",
         )  # fmt: skip
     longest = float(np.diff(pulse.time[pulse.inside]).max(initial=0.0))
@@ -119,9 +120,3 @@ def _possible(restitution: Measured, source: str) -> Measured:
             "fit, of a striker that is free; without the speed the impulse alone is told",
         )  # fmt: skip
     return Measured(min(max(restitution.value, 0.0), 1.0), math.hypot(restitution.std, off))
-
-
-def _restitution(change: Measured, approach: Measured, fall: float) -> Measured:
-    """Return what turns the approach round: the change of speed less what gravity took."""
-    ratio = Measured(change.value - fall, change.std).over(approach)
-    return Measured(ratio.value - 1.0, ratio.std)

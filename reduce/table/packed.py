@@ -101,9 +101,7 @@ def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
             rows.append(at)
     if not rows:
         raise InputError("no position", source=str(path), allowed="a track with positions")
-    unit = next(
-        (p.text or "m" for p in root.iter("property") if p.get("name") == "length_unit"), "m"
-    )
+    unit = _text(root, "length_unit") or "m"
     unit = "px" if axes["xscale"] == 1.0 == axes["yscale"] else unit
     return ["t [s]" if timed else "frame", f"x [{unit}]", f"y [{unit}]"], rows
 

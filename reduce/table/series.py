@@ -42,11 +42,7 @@ class Series(NamedTuple):
 
     def missed_notes(self, but: str) -> tuple[str, ...]:
         """Return what is said of cells that hold no number, if there are some."""
-        return (f"{self.told()}{but}",) if self.missed.size else ()
-
-    def told(self) -> str:
-        """Return how many cells hold no number, and what they hold."""
-        return no_number(self.missed.size, self.marks)
+        return (f"{no_number(self.missed.size, self.marks)}{but}",) if self.missed.size else ()
 
 
 def no_number(count: int, marks: Iterable[str]) -> str:
@@ -120,32 +116,26 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     where = table.find(options.time, key="time")
     second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
     given = table.values[:, where]
-    if options.rate_hz is None and not np.isfinite(given).any():
-        raise InputError(
-            f"no times in column {table.names[where] or where + 1!r}", source=table.source,
-            key="time", allowed="a column of times, or samples a second as rate_hz",
-        )  # fmt: skip
     if options.rate_hz is not None:
         # a clock of a computer is coarser than the samples: their number tells the time
         return (given if _counts(given) else rows) / options.rate_hz
-    if options.time_unit == "file" and not table.unit(where) and _counts(given):
-        raise InputError(
-            "the column counts samples", source=table.source, key="rate_hz",
-            allowed="samples a second, or time_unit if these are times",
-        )  # fmt: skip
+    unsaid = options.time_unit == "file" and not table.unit(where)
+    column = f"column {table.names[where] or where + 1!r}"
     days = [float(date(y, 1, 1).toordinal() - _DAY_0) for y in (1970, 2100)]
     first = float(given[np.isfinite(given)][:1].sum())
-    if options.time_unit == "file" and not table.unit(where) and days[0] < first < days[1]:
-        raise InputError(
-            f"column {table.names[where] or where + 1!r}: {first:.9g} are seconds, or days of a "
-            "spreadsheet", source=table.source, key="time_unit",
-            allowed="s, or another column; days: seconds or a clock in their place",
-        )  # fmt: skip
-    late = float(np.nanmax(np.abs(given), initial=0.0))
-    if options.time_unit == "file" and not table.unit(where) and late > date.max.toordinal() * DAY:
-        raise InputError(
-            f"column {table.names[where] or where + 1!r}: {late:.3g} are no seconds, they pass the "
-            f"year {date.max.year}",
-            source=table.source, key="time_unit", allowed="ms, us, ns, or another column of times",
-        )  # fmt: skip
+    late = float(np.fmax.reduce(np.abs(given), initial=0.0))
+    for wrong, told, key, allowed in (
+        (not np.isfinite(given).any(), f"no times in {column}", "time",
+         "a column of times, or samples a second as rate_hz"),
+        (unsaid and _counts(given), "the column counts samples", "rate_hz",
+         "samples a second, or time_unit if these are times"),
+        (unsaid and days[0] < first < days[1],
+         f"{column}: {first:.9g} are seconds, or days of a spreadsheet", "time_unit",
+         "s, or another column; days: seconds or a clock in their place"),
+        (unsaid and late > date.max.toordinal() * DAY,
+         f"{column}: {late:.3g} are no seconds, they pass the year {date.max.year}", "time_unit",
+         "ms, us, ns, or another column of times"),
+    ):  # fmt: skip
+        if wrong:
+            raise InputError(told, source=table.source, key=key, allowed=allowed)
     return np.asarray(given * second)

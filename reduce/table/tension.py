@@ -60,10 +60,11 @@ def reduce_tension(
         strain, stress = _true(strain, stress, sign, source)
     rise, zero = elastic_rise(strain, stress, source)
     _no_slip(strain, stress, rise.value, source)
-    line = _Line(rise.value, zero, rise) if E is None else _stated(strain, stress, rise, zero, E)
-    if line.note:
-        notes.append(line.note)
-    flow = _rows(strain - line.zero - stress / line.slope, stress, source)
+    modulus = rise
+    if E is not None:
+        modulus, zero, told = _stated(strain, stress, rise, zero, E)
+        notes += told
+    flow = _rows(strain - zero - stress / modulus.value, stress, source)
     if E is None and (wrong := _no_metal(rise, flow.strength)):
         raise Refused(
             wrong, source=source, key="E_Pa",
@@ -71,11 +72,11 @@ def reduce_tension(
             "metal's modulus",
         )  # fmt: skip
     values = {
-        "E_Pa": line.modulus, "Sy_Pa": _strength(flow, rise),
+        "E_Pa": modulus, "Sy_Pa": _strength(flow, rise),
         "largest_stress_Pa": Measured(float(flow.stress.max()), math.nan),
         "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
     }  # fmt: skip
-    return TensionReduction(strain - line.zero, stress, rise, flow, values, tuple(notes))
+    return TensionReduction(strain - zero, stress, rise, flow, values, tuple(notes))
 
 
 def _readings(strain: Array, stress: Array, source: str) -> tuple[Array, Array]:
@@ -110,27 +111,19 @@ def _true(strain: Array, stress: Array, sign: float, source: str) -> tuple[Array
     return sign * np.log(shrunk), stress * shrunk
 
 
-@dataclass(frozen=True)
-class _Line:
-    """The elastic line from which plastic strain is counted: slope [Pa] and zero [-].
+def _stated(
+    strain: Array, stress: Array, rise: Measured, zero: float, E: float
+) -> tuple[Measured, float, list[str]]:
+    """Return slope and zero of the line of a stated modulus [Pa], and what is to be said of it.
 
-    Beside it the modulus that is told, and what is to be said of it.
+    They are the curve's own where that contradicts it.
     """
-
-    slope: float
-    zero: float
-    modulus: Measured
-    note: str = ""
-
-
-def _stated(strain: Array, stress: Array, rise: Measured, zero: float, E: float) -> _Line:
-    """Return the line of a stated modulus [Pa]; the curve's own where that contradicts it."""
     if rise.std > RULES.own_error * rise.value:
         offset = (strain - stress / E)[: int(np.argmax(stress > 0.5 * stress.max()))]
         zero = float(np.partition(offset, 2)[2]) if offset.size > 2 else zero
-        return _Line(E, zero, Measured(E, 0.0))
+        return Measured(E, 0.0), zero, []
     if abs(rise.value - E) <= max(0.2 * E, 2.0 * rise.std):
-        return _Line(E, zero, Measured(E, 0.0))
+        return Measured(E, 0.0), zero, []
     why = (
         "the machine gives way" if rise.value < E else
         "no machine makes it steeper, so E_Pa is too low, or the strain, area or gauge length "
@@ -140,7 +133,7 @@ def _stated(strain: Array, stress: Array, rise: Measured, zero: float, E: float)
         f"the curve rises with {rise.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: {why}; the "
         "plastic strain is counted from the curve's own line"
     )
-    return _Line(rise.value, zero, rise.widened(rise.value - E), note)
+    return rise.widened(rise.value - E), zero, [note]
 
 
 def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:

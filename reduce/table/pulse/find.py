@@ -19,7 +19,7 @@ from ...measured import Measured
 from ...rules import RULES
 from ...shared.flank import meets_zero
 from .area import Area, area_of
-from .level import Level, level_before, wide
+from .level import Level, level_before, run_of, wide
 from .ringing import ringing_within
 from .shape import Shape, looks_like, shape_of, sheer
 
@@ -159,12 +159,8 @@ def _timed(start: Measured, end: Measured, source: str) -> None:
 
 def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, float]:
     """Peak by a local parabola over the samples above 90 % of the highest one."""
-    high = clear > 0.9 * clear[top]
-    low, up = top, top
-    while low > 0 and high[low - 1]:
-        low -= 1
-    while up + 1 < clear.size and high[up + 1]:
-        up += 1
+    run = run_of(clear > 0.9 * clear[top], top)
+    low, up = int(run[0]), int(run[-1])
     if up - low < 4:
         return Measured(float(clear[top]), max(noise, 0.02 * float(clear[top]))), float(time[top])
     width = min(up - low + 1, 51) // 2 * 2 + 1

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....core.arrays import Array
+from ....core.arrays import Array, Indices, Mask
 from ...rules import RULES
 from ...shared.regression import robust_std
 
@@ -70,11 +70,16 @@ def _wander(part: Array, long: int, noise: float) -> float:
     return scatter if scatter > RULES.by_chance * noise / math.sqrt(long) else 0.0
 
 
+def run_of(chosen: Mask, at: int) -> Indices:
+    """Return the unbroken run of chosen samples around one of them."""
+    out = np.flatnonzero(~chosen)
+    low = out[out < at].max(initial=-1)
+    return np.arange(low + 1, out[out > at].min(initial=chosen.size))
+
+
 def wide(up: Array, top: int, half: float) -> int:
-    """Return how many samples around the top lie above a value."""
-    under = np.flatnonzero(up < half)
-    left = under[under < top].max(initial=-1)
-    return int(under[under > top].min(initial=up.size) - left)
+    """Return how many steps around the top lie above a value, those over its flanks among them."""
+    return run_of(up >= half, top).size + 1
 
 
 def _quiet(up: Array, width: int, noise: float, height: float, low: float) -> int | None:

@@ -18,9 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....core.arrays import Array, Indices, Mask
+from ....core.arrays import Array
 from ...gates import Refused
 from ...rules import RULES
+from .level import run_of
 
 
 class Shape(NamedTuple):
@@ -55,7 +56,7 @@ def shape_of(
         )  # fmt: skip
     if not ends[1] > ends[0]:
         raise looks_like("a ramp: it ends before it begins", source)
-    half = int(_run(clear > 0.5 * peak, top).size)
+    half = int(run_of(clear > 0.5 * peak, top).size)
     if half < RULES.fewest_above_half:
         raise looks_like(f"a spike: {half} samples above half of its peak", source)
     long = ends[1] - ends[0]
@@ -111,7 +112,7 @@ def _single(
 
 def _wide(clear: Array, top: int) -> float:
     """Return the width at 95 % of the peak in that at half of it, in a mean over the noise."""
-    half = _run(clear > 0.5 * clear[top], top)
+    half = run_of(clear > 0.5 * clear[top], top)
     ordered = np.sort(clear[half])
     # the highest samples are the noise's: a tenth of them is left out of the peak
     peak = float(ordered[-1 - half.size // 10])
@@ -128,7 +129,7 @@ def looks_like(what: str, source: str) -> Refused:
 
 def sheer(clear: Array, top: int) -> bool:
     """Return whether a pulse leaves its top for the level without a sample between, either way."""
-    high = _run(clear > 0.9 * clear[top], top)
+    high = run_of(clear > 0.9 * clear[top], top)
     beside = clear[[max(high[0] - 1, 0), min(high[-1] + 1, clear.size - 1)]]
     return bool(beside.min() < RULES.flank[0] * clear[top])
 
@@ -137,13 +138,6 @@ def _half_waves(part: Array, least: float) -> int:
     """Return how many times a record swings beyond a part of its peak, to either side in turn."""
     sides = np.sign(part[np.abs(part) > least])
     return 1 + int(np.count_nonzero(np.diff(sides)))
-
-
-def _run(chosen: Mask, at: int) -> Indices:
-    """Return the unbroken run of chosen samples around one of them."""
-    out = np.flatnonzero(~chosen)
-    low = out[out < at].max(initial=-1)
-    return np.arange(low + 1, out[out > at].min(initial=chosen.size))
 
 
 def _flat_top(clear: Array, top: int) -> int:
@@ -155,7 +149,7 @@ def _flat_top(clear: Array, top: int) -> int:
     peak = float(clear[top])
     steps = np.diff(np.unique(clear))
     steps = steps[steps > 1e-9 * peak]
-    near = _run(clear > (1.0 - RULES.round_top) * peak, top)
+    near = run_of(clear > (1.0 - RULES.round_top) * peak, top)
     if steps.size == 0 or near[0] == 0 or near[-1] == clear.size - 1:
         return 0
     step = float(np.percentile(steps, 10.0))

@@ -137,7 +137,6 @@ def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
 
 
 def _take(row: Sequence[str], k: int, sheet: SheetRows, so_far: _SoFar) -> None:
-    """Add what a row gives."""
     left = so_far.left
     found, unread = _read(row, k, sheet, left)
     if not found and not unread:
