@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -93,7 +93,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
-    leave_if_unfinished(list(found.values()), list(found))
+    leave_if_unfinished(found)
     if unfinished:
         raise typer.Exit(EXIT_NOT_CONVERGED)
 
@@ -129,11 +129,10 @@ def _sweep(
     return written, int((first["outcome"] != "completed").sum()), "\n".join(told)
 
 
-def leave_if_unfinished(impacts: list[Impact], laws: Sequence[str] = ()) -> None:
-    """End with exit code 3 if an impact, of these laws, ran out of a budget."""
-    stopped = [k for k, one in enumerate(impacts) if not one.outcome.completed]
+def leave_if_unfinished(impacts: Mapping[str, Impact]) -> None:
+    """End with exit code 3 if an impact, by its law, ran out of a budget."""
+    stopped = {law: one.outcome for law, one in impacts.items() if not one.outcome.completed}
     if stopped:
-        of = f" ({', '.join(laws[k] for k in stopped)})" if laws else ""
-        why = impacts[stopped[0]].outcome
-        typer.echo(f"{len(stopped)} of {len(impacts)} impacts{of}: {why}", err=True)
+        told = f"{len(stopped)} of {len(impacts)} impacts ({', '.join(stopped)})"
+        typer.echo(f"{told}: {next(iter(stopped.values()))}", err=True)
         raise typer.Exit(EXIT_NOT_CONVERGED)

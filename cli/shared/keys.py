@@ -129,7 +129,6 @@ def _table_in(annotation: Any) -> tuple[type[BaseModel] | None, str]:
 
 
 def _allowed(name: str, field: FieldInfo) -> str:
-    """What the schema accepts, in words."""
     words = [_kind(field.annotation)]
     if typing.get_origin(field.annotation) is typing.Literal:
         words = [f'"{value}"' for value in typing.get_args(field.annotation)]

@@ -130,8 +130,8 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     checked_file(path, most=TABLE_BYTES, allowed="a table")
     kind = path.suffix.lower()
     if kind == ".trk":
-        names, rows = tracker_rows(path, sheet)
-        return Columns(tuple(names), np.array(rows), Shown(np.array(rows)), str(path))
+        named, rows = tracker_rows(path, sheet)
+        return Columns(named, rows, Shown(rows), str(path))
     if kind == ".zip":
         text, source = packed_table(path, sheet)
         return text_columns(text, source, sheet)

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 
 # limit: largest table of numbers [bytes]; memory of a small machine
@@ -54,8 +55,8 @@ def packed_table(path: Path, member: str) -> tuple[bytes, str]:
         ) from None  # fmt: skip
 
 
-def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
-    """Return names and rows (time, x, y) of one point mass of a Tracker project; refuse none.
+def tracker_rows(path: Path, track: str) -> tuple[tuple[str, ...], Array]:
+    """Return names and rows (n, 3) of a point mass of a Tracker project: time, x, y; refuse none.
 
     The places are those in the picture turned into the project's axes and scale; without a
     calibration the scale is 1 and the unit the pixel. Without `delta_t`, the milliseconds of a
@@ -85,25 +86,19 @@ def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
         for p in _property(mass, "framedata").findall("property")
         if p.get("name", "")[1:-1].isdigit()
     ]
-    step, axes = _number(root, "delta_t") / 1e3, _axes(root)
-    timed = step > 0.0
+    axes, step = _axes(root), max(_number(root, "delta_t", 0.0) / 1e3, 0.0)
     turn = cmath.rect(1.0, math.radians(axes["angle"]))
-    rows = []
-    for frame, x, y in sorted(frames):
-        # rows of a picture grow downwards
-        place = complex(x - axes["xorigin"], axes["yorigin"] - y) / turn
-        at = [
-            frame * (step if timed else 1.0),
-            place.real / axes["xscale"],
-            place.imag / axes["yscale"],
-        ]
-        if np.isfinite(at).all():
-            rows.append(at)
-    if not rows:
+    frame, x, y = np.array(sorted(frames), dtype=float).reshape(-1, 3).T
+    # rows of a picture grow downwards
+    place = (x - axes["xorigin"] + 1j * (axes["yorigin"] - y)) / turn
+    with np.errstate(over="ignore"):
+        at = (frame * (step or 1.0), place.real / axes["xscale"], place.imag / axes["yscale"])
+    rows = np.stack(at, axis=1)[np.isfinite(at).all(axis=0)]
+    if not len(rows):
         raise InputError("no position", source=str(path), allowed="a track with positions")
     unit = _text(root, "length_unit") or "m"
     unit = "px" if axes["xscale"] == 1.0 == axes["yscale"] else unit
-    return ["t [s]" if timed else "frame", f"x [{unit}]", f"y [{unit}]"], rows
+    return ("t [s]" if step else "frame", f"x [{unit}]", f"y [{unit}]"), rows
 
 
 def _property(parent: Any, name: str) -> Any:

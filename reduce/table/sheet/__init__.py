@@ -3,6 +3,7 @@
 Every column and every cell that is not taken is told: nothing disappears without a line.
 """
 
-from .file import Sheet, read_balls, read_sheet
+from .file import read_balls, read_sheet
+from .rows import Sheet
 
 __all__ = ["Sheet", "read_balls", "read_sheet"]

@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
 
 from ....core.errors import InputError
 from ....core.inputs.csv_table import rows_with, selection
 from ....core.inputs.input_file import checked_file
 from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
-from ....recordings.columns import MEASURED
-from ....recordings.template import Shape
-from ...measured import Measured, Trial
-from ...reduced import Reduced
 from ..file import cells_of, decoded, is_book
 from ..packed import TABLE_BYTES
-from ..picture import draw_trials
 from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of
 from .headers import Head, SheetColumn, columns_of, given_columns, head_of
 from .kinds import SUMMARY, without_unit
-from .rows import SeveralBallsError, SheetRows, trials_of
-from .words import APPROACHES, BODY, ROD, bare
+from .rows import SeveralBallsError, Sheet, SheetRows, trials_of
+from .words import BODY, bare
 
 _TYPED = str.maketrans({
     "\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u3000": " ", "℃": "°C",
@@ -39,49 +30,6 @@ _CODINGS = ("cp1250", "gb18030", "cp932")
 """Of old spreadsheets, beside Latin: Polish, Chinese, Japanese."""
 # limit: lines by which encoding and separator are chosen [-]: headers, and numbers below them
 _LINES = 100
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """What a sheet became: its rows, and of each of its columns the header and what became of it.
-
-    Then a line for each cell, row and sheet that was not taken, and what it has of the striker.
-    """
-
-    trials: tuple[Trial, ...]
-    columns: tuple[tuple[str, str], ...]
-    left_out: tuple[str, ...]
-    striker: Mapping[str, Measured]
-
-    @property
-    def shape(self) -> Shape:
-        """What struck: a rod where the sheet speaks of one, else a sphere."""
-        words = " ".join(bare(header) for header, _ in self.columns)
-        return "rod" if re.search(ROD, words) and not self.striker else "sphere"
-
-    def shown(self, first: str) -> tuple[list[str], list[list[str]]]:
-        """Return names and cells of a table of the trials, as a set has them; `first` is theirs."""
-        names = dict.fromkeys(name for trial in self.trials for name in trial.observables)
-        rows = [
-            [f"{first}-{t.label}", *(str(t.observables.get(name, "")) for name in names), t.note]
-            for t in self.trials
-        ]
-        return ["trial", *names, "note"], rows
-
-    def reduced(self, path: Path) -> Reduced:
-        """Return it as what every reduction hands on."""
-        notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
-        seen = self.trials[0].observables
-        across = next(n for n in APPROACHES if n in seen)
-        up = next(n for n in seen if n in MEASURED)
-        without = Measured(math.nan, math.nan)
-        x, y = (np.array([t.observables.get(n, without).value for t in self.trials])
-                for n in (across, up))  # fmt: skip
-        values = {"trials": Measured(float(len(self.trials)), math.nan)}
-        return Reduced(
-            path, values, self.trials, lambda to: draw_trials((across, x), (up, y), to), notes,
-            self.striker,
-        )  # fmt: skip
 
 
 def read_sheet(
@@ -119,10 +67,8 @@ def read_sheet(
     # where commas part the cells, points part no thousands
     points = between == "," and not any("," in c for row in rows for c in row)
     decimals = decimals_of(rows[head.end :], kept, between) or "." * points
-    trials, became, left, striker = trials_of(
-        SheetRows(rows, head.end, kept, decimals, source), told
-    )
-    return Sheet(trials, became, (*left, *others), striker)
+    found = trials_of(SheetRows(rows, head.end, kept, decimals, source), told)
+    return replace(found, left_out=(*found.left_out, *others))
 
 
 def _fill_balls(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> None:

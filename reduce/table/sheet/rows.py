@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from statistics import median
+
+import numpy as np
 
 from ....core.errors import InputError, InputErrors
 from ....recordings.columns import MEASURED
 from ....recordings.rules import RULES as OWN
+from ....recordings.template import Shape
 from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
+from ...reduced import Reduced
 from ...shared.units import UNITS
 from ..heading import in_short
+from ..picture import draw_trials
 from . import words
 from .cell import number_in, why_not
 from .headers import ABOVE, NOT_UNDERSTOOD, SheetColumn
@@ -44,10 +51,47 @@ class SheetRows:
     source: str
 
 
-Taken = tuple[
-    tuple[Trial, ...], tuple[tuple[str, str], ...], tuple[str, ...], Mapping[str, Measured]
-]  # fmt: skip
-"""What rows became: the fields of a `Sheet`."""
+@dataclass(frozen=True)
+class Sheet:
+    """What a sheet became: its rows, and of each of its columns the header and what became of it.
+
+    Then a line for each cell, row and sheet that was not taken, and what it has of the striker.
+    """
+
+    trials: tuple[Trial, ...]
+    columns: tuple[tuple[str, str], ...]
+    left_out: tuple[str, ...]
+    striker: Mapping[str, Measured]
+
+    @property
+    def shape(self) -> Shape:
+        """What struck: a rod where the sheet speaks of one, else a sphere."""
+        headers = " ".join(bare(header) for header, _ in self.columns)
+        return "rod" if re.search(words.ROD, headers) and not self.striker else "sphere"
+
+    def shown(self, first: str) -> tuple[list[str], list[list[str]]]:
+        """Return names and cells of a table of the trials, as a set has them; `first` is theirs."""
+        names = dict.fromkeys(name for trial in self.trials for name in trial.observables)
+        rows = [
+            [f"{first}-{t.label}", *(str(t.observables.get(name, "")) for name in names), t.note]
+            for t in self.trials
+        ]
+        return ["trial", *names, "note"], rows
+
+    def reduced(self, path: Path) -> Reduced:
+        """Return it as what every reduction hands on."""
+        notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
+        seen = self.trials[0].observables
+        across = next(n for n in APPROACHES if n in seen)
+        up = next(n for n in seen if n in MEASURED)
+        without = Measured(math.nan, math.nan)
+        x, y = (np.array([t.observables.get(n, without).value for t in self.trials])
+                for n in (across, up))  # fmt: skip
+        values = {"trials": Measured(float(len(self.trials)), math.nan)}
+        return Reduced(
+            path, values, self.trials, lambda to: draw_trials((across, x), (up, y), to), notes,
+            self.striker,
+        )  # fmt: skip
 
 
 @dataclass
@@ -64,7 +108,7 @@ class _SoFar:
     first_with: dict[tuple[str, ...], int] = field(default_factory=dict)
 
 
-def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
+def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Sheet:
     """Return the trials of the rows, `told` what became of the columns that are not understood.
 
     Refuses a sheet without an approach, anything measured, or a unit.
@@ -110,7 +154,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Taken:
     ]  # fmt: skip
     own = [(c.header, became(c, columns, found.used, striker, naming)) for c in columns]
     lines = [*_lines(found, columns, [*stds], told), *filter(None, [alike])]
-    return tuple(named), (*own, *told), (*found.left, *lines), striker
+    return Sheet(tuple(named), (*own, *told), (*found.left, *lines), striker)
 
 
 def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
