@@ -75,23 +75,19 @@ def series_of(table: Columns, options: TableOptions) -> Series:
     marks = tuple(sorted({table.cells[int(k)][column] for k in np.flatnonzero(holes)}))
     time, value, missed = time[whole], value[whole], time[holes]
     largest = float(np.abs([time, value]).max(initial=0.0))
-    if largest > LARGEST_NUMBER:
-        raise InputError(
-            f"a number of {largest:.3g}", source=table.source, key="value",
-            allowed=f"up to {LARGEST_NUMBER:g}",
-        )  # fmt: skip
     # a tracker that begins anew writes its frames again further down
     ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
-    if time.size and ahead.sum() < 0.5 * time.size:
-        raise InputError(
-            "the times do not increase", source=table.source, key="time",
-            allowed="a column of times, or of numbers of samples with rate_hz",
-        )  # fmt: skip
-    if ahead.sum() < RULES.table_rows:
-        raise InputError(
-            f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
-            allowed=f"{RULES.table_rows} or more",
-        )  # fmt: skip
+    rows = int(ahead.sum())
+    for wrong, told, key, allowed in (
+        (largest > LARGEST_NUMBER, f"a number of {largest:.3g}", "value",
+         f"up to {LARGEST_NUMBER:g}"),
+        (rows < 0.5 * time.size, "the times do not increase", "time",
+         "a column of times, or of numbers of samples with rate_hz"),
+        (rows < RULES.table_rows, f"{rows} rows with a time and a value", "value",
+         f"{RULES.table_rows} or more"),
+    ):  # fmt: skip
+        if wrong:
+            raise InputError(told, source=table.source, key=key, allowed=allowed)
     return Series(time[ahead], value[ahead], column, missed, marks, int((~ahead).sum()))
 
 
