@@ -108,13 +108,12 @@ def run(
                 until=until,
                 report=ended,
             )
+        code = 0 if after.done == after.designed else EXIT_NOT_CONVERGED
     except STOPS as stop:
-        code = stopped(stop)
+        code, after = stopped(stop), status_of(chosen, store)
         typer.echo("stopped; the same command goes on from here")
-        _summary(chosen, out, status_of(chosen, store), time.monotonic() - started, progress.cpu_s)
-        return code
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
-    return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
+    return code
 
 
 def _why(counts: Any, out: Path) -> str:

@@ -57,12 +57,26 @@ def lacking(setup: Setup, scene: Scene, found: Impact) -> dict[str, Lack]:
         "rate": ("strain-rate-hardening", "mechanisms.strain-rate-hardening (false: none)"),
         **({} if follows else {"hardening": ("work-hardening", "a flow curve or hardening")}),
     }
-    lacks = {
-        what: _range_of(what, mechanism, state, setup, scene, found, body)
-        for what, (mechanism, state) in wanted.items()
-        if mechanism not in said
-    }
-    return {what: lack for what, lack in lacks.items() if lack is not None}
+    lacks, named = dict[str, Lack](), materials().get(body.material)
+    for what, (mechanism, state) in wanted.items():
+        if mechanism in said:
+            continue
+        # by the metal's own constants, or the least and the most of its class
+        own = named is not None and what in named.laws
+        chosen = [named] if named is not None and own else _class_of(body, what)
+        if not chosen:
+            continue
+        S, strain = None if own else value_of(body.strength), REPRESENTATIVE * radius / scene.pair.R
+        numbers = (_numbers(e, what, S, strain) for e in chosen)
+        sizes = sorted(numbers, key=lambda one: next(iter(one.values())))
+        ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
+        blows = tuple(last_blow(setup.with_mechanism(mechanism, one), scene.law) for one in ends)
+        kind = chosen[0].kind
+        same = named is not None and named.kind == kind
+        others = "others of its kind" if same else "the nearest in the table"
+        whose = body.material if own else f"{others} ({kind}, {len(sizes)})"
+        lacks[what] = Lack(f"with that of {whose}", blows, state)
+    return lacks
 
 
 def flow_checks(
@@ -86,30 +100,6 @@ def flow_checks(
         )
     if "hardening" in lacks:
         yield f"no hardening is stated; {lacks['hardening'].told(found)}"
-
-
-def _range_of(
-    what: str, mechanism: str, state: str, setup: Setup, scene: Scene, found: Impact,
-    body: BodyTable,
-) -> Lack | None:  # fmt: skip
-    """The effect by the metal's own constants, or the least and the most of its class."""
-    named = materials().get(body.material)
-    own = named is not None and what in named.laws
-    chosen = [named] if named is not None and own else _class_of(body, what)
-    S = None if own else value_of(body.strength)
-    radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
-    strain = REPRESENTATIVE * radius / scene.pair.R
-    numbers = (_numbers(e, what, S, strain) for e in chosen)
-    sizes = sorted(numbers, key=lambda one: next(iter(one.values())))
-    if not sizes:
-        return None
-    ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
-    blows = tuple(last_blow(setup.with_mechanism(mechanism, one), scene.law) for one in ends)
-    kind = chosen[0].kind
-    same = named is not None and named.kind == kind
-    others = "others of its kind" if same else "the nearest in the table"
-    whose = body.material if own else f"{others} ({kind}, {len(sizes)})"
-    return Lack(f"with that of {whose}", blows, state)
 
 
 def _class_of(body: BodyTable, what: str) -> list[Entry]:
