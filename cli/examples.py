@@ -20,13 +20,9 @@ def examples(
     """List the examples, or copy them to start from."""
     for path in sorted(p for p in FOLDER.iterdir() if p.is_file()):
         if to is None:
-            typer.echo(f"{path.name:28} {_about(path)}")
+            about = "the same as a notebook"
+            if path.suffix != ".ipynb":
+                about = path.read_text(encoding="utf-8").splitlines()[0].strip('#" ')
+            typer.echo(f"{path.name:28} {about}")
         else:
             typer.echo(f"written: {write_file(to / path.name, path.read_bytes())}")
-
-
-def _about(path: Path) -> str:
-    """First line of what the file says of itself."""
-    if path.suffix == ".ipynb":
-        return "the same as a notebook"
-    return path.read_text(encoding="utf-8").splitlines()[0].strip('#" ')

@@ -103,7 +103,9 @@ def close(
     named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
     plain = simulator.predict((), [Point(base.z)])[0]
     peaks = simulator.observe(best.mechanisms, [Point(z, constants)])["peak_depth_m"][0]
-    bodies = _of_the_metal(problem, z)
+    # without what a closed form may be off, and with all strikers as stated
+    kept = [not n.name.startswith("strikers.") for n in problem.nuisances]
+    bodies = np.where([*kept, *[False] * problem.error.count], z, 0.0)
     rest = tuple(m for m in best.mechanisms if m not in carried)
     values = {m.name: constants[m.name] for m in rest}
     solver = fem.Accuracy.quick() if accuracy is None else accuracy
@@ -150,13 +152,6 @@ def _kept_out(problem: Problem) -> Mask:
     speed = np.array([c.speed for c in problem.conditions])
     out = (speed > RULES.kept_out * speed.max())[problem.cells.condition]
     return out if np.sum(~out) >= DIAGNOSIS.fewest_readings else np.zeros_like(out)
-
-
-def _of_the_metal(problem: Problem, z: Array) -> Array:
-    """The unknowns without what a closed form may be off, and with all strikers as stated."""
-    kept = [not n.name.startswith("strikers.") for n in problem.nuisances]
-    kept += [False] * problem.error.count
-    return np.where(kept, z, 0.0)
 
 
 def _alone(problem: Problem, here: Mask, press: MetalPress, table: PairTable) -> Problem:

@@ -63,7 +63,8 @@ class Commands(TyperGroup):
     def abouts(self, ctx: Any) -> dict[str, str]:
         """Commands that are shown, and what each is for."""
         known = {name: self.get_command(ctx, name) for name in self.list_commands(ctx)}
-        return {n: _sentence(c) for n, c in known.items() if c is not None and not c.hidden}
+        helps = {n: c.help or "" for n, c in known.items() if c is not None and not c.hidden}
+        return {n: " ".join(text.split("\n\n")[0].split()) for n, text in helps.items()}
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command; for an unknown one say which there are."""
@@ -80,12 +81,6 @@ class Sections(Commands):
     """The first group, in sections."""
 
     sections = SECTIONS
-
-
-def _sentence(command: Any) -> str:
-    """First paragraph of a command's help, on one line."""
-    text = (command.help or "").split("\n\n")[0]
-    return " ".join(text.split())
 
 
 def group(about: str, *, cls: type[Commands] = Commands) -> typer.Typer:

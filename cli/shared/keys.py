@@ -132,19 +132,14 @@ def _allowed(name: str, field: FieldInfo) -> str:
     words = [_kind(field.annotation)]
     if typing.get_origin(field.annotation) is typing.Literal:
         words = [f'"{value}"' for value in typing.get_args(field.annotation)]
-    limits = [getattr(getattr(m, "func", None), "allowed", "") for m in _metadata(field)]
+    parts = (field.annotation, *typing.get_args(field.annotation))
+    marks = [*field.metadata, *(m for part in parts for m in getattr(part, "__metadata__", ()))]
+    limits = [getattr(getattr(m, "func", None), "allowed", "") for m in marks]
     bounds = {"gt": "above {:g}", "ge": "{:g} or more", "lt": "below {:g}", "le": "up to {:g}"}
     for part in field.metadata:
         limits += [text.format(getattr(part, k)) for k, text in bounds.items() if hasattr(part, k)]
     limits = [one.removeprefix("a number ") for one in limits if one]
     return _with_unit(" ".join([" or ".join(words), " and ".join(limits)]).strip(), name)
-
-
-def _metadata(field: FieldInfo) -> list[Any]:
-    found = list(field.metadata)
-    for part in (field.annotation, *typing.get_args(field.annotation)):
-        found += getattr(part, "__metadata__", ())
-    return found
 
 
 def _kind(annotation: Any) -> str:

@@ -83,9 +83,15 @@ def lammps_lines(
     if not given:
         return "\n".join(lines) + "\n"
     flat, balls, speeds, steps = zip(*given, strict=True)
+    tangential = "none, for the file states no friction.coefficient"
+    if friction > 0.0:
+        tangential = (
+            f"Mindlin's spring and Coulomb's {friction:g}, softened as the normal one; our own law "
+            "has no viscous part"
+        )
     scene = _spheres(pair.R, mass, second) if second else _balls(pair.R, mass, bool(of_balls))
     return LAMMPS.format(
-        told="\n".join(lines), tangential=_tangential_told(friction), **scene,
+        told="\n".join(lines), tangential=tangential, **scene,
         speeds=" ".join(f"{v:g}" for v in speeds), steps=" ".join(f"{t:.4e}" for t in steps),
         flat=" ".join(f'&\n "{one}"' for one in flat),
         balls=" ".join(f'&\n "{one}"' for one in balls),
@@ -152,12 +158,3 @@ def _atom(k: int, radius: float, mass: float, x: float, z: float, speed: str) ->
 
 def _box(half: float) -> str:
     return " ".join([f"{-half:g} {half:g}"] * 3)
-
-
-def _tangential_told(friction: float) -> str:
-    if friction > 0.0:
-        return (
-            f"Mindlin's spring and Coulomb's {friction:g}, softened as the normal one; our own law "
-            "has no viscous part"
-        )
-    return "none, for the file states no friction.coefficient"

@@ -88,10 +88,9 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
     tip = np.array([0.0, scale * body.tip_radius_m.value]) + 0.5 * direction
     axis.annotate("", xy=tip, xytext=tip - direction, arrowprops={"arrowstyle": "-|>", "lw": 1.4})
     speed = math.hypot(approach.tangential, approach.speed)
-    told = [
-        "to scale",
-        f"{setup.striker}: {_size(body)}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s",
-    ]
+    size = f"R {_length(body.tip_radius_m.value)}"
+    size = size if body.shape == "sphere" else f"tip {size}, {_length(body.length)}"
+    told = ["to scale", f"{setup.striker}: {size}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s"]
     second = setup.second
     if second is not None:
         kind = "sphere" if second.radius > 0.0 else "seat"
@@ -168,11 +167,6 @@ def _draw_curves(
     for axis in axes:
         axis.grid(alpha=0.3)
     axes[0].legend(fontsize=7)
-
-
-def _size(body: Any) -> str:
-    radius = _length(body.tip_radius_m.value)
-    return f"R {radius}" if body.shape == "sphere" else f"tip R {radius}, {_length(body.length)}"
 
 
 def _length(x: float) -> str:

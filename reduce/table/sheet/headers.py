@@ -215,7 +215,9 @@ def columns_of(
             spread = spread and kind.quantity != "text"
             columns.append(SheetColumn(place, header, kind, unit_of(says, kind), spread))
         elif header or cells:
-            told.append((header or f"column {place + 1}", _not_understood(header)))
+            why = NOT_UNDERSTOOD if header else "left out: no header"
+            like = header and kinds.nearest(header)
+            told.append((header or f"column {place + 1}", f"{why}: {like}" if like else why))
     kept = []
     for column in columns:
         own = column.unit or quantity_of(kinds.said_unit(column.header))
@@ -235,13 +237,6 @@ def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind 
             same = quantity_of(kinds.said_unit(says)) in ("", column.kind.quantity)
             return column.kind if same else None
     return None
-
-
-def _not_understood(header: str) -> str:
-    if not header:
-        return "left out: no header"
-    like = kinds.nearest(header)
-    return f"{NOT_UNDERSTOOD}: {like}" if like else NOT_UNDERSTOOD
 
 
 def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) -> str:

@@ -125,7 +125,11 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Sheet:
             _take(row, k, sheet, found)
         if aside.startswith(" and"):
             break
-    _check_units(columns, sheet.source)
+    if wrong := [c for c in columns if c.unitless]:
+        raise InputErrors(tuple(
+            InputError(c.no_unit, source=sheet.source, key=c.header,
+                       allowed=", ".join(UNITS[c.kind.quantity])) for c in wrong
+        ))  # fmt: skip
     if not found.trials:
         why = f"; {found.left[0]}" if found.left else ""
         raise InputError(
@@ -275,14 +279,6 @@ def _striker(body: Mapping[str, set[Measured]]) -> dict[str, Measured]:
     size, mass = one.get(words.BALL_DIAMETER), one.get(words.BALL_MASS)
     found = {"tip_radius_m": size and size.scaled(0.5), "mass_kg": mass}
     return {key: value.rounded() for key, value in found.items() if value and value.value > 0.0}
-
-
-def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
-    wrong = [(c, ", ".join(UNITS[c.kind.quantity])) for c in columns if c.unitless]
-    if wrong:
-        raise InputErrors(tuple(
-            InputError(c.no_unit, source=source, key=c.header, allowed=units) for c, units in wrong
-        ))  # fmt: skip
 
 
 def _later(sheet: SheetRows, readings: Sequence[Readings]) -> list[SheetColumn]:
