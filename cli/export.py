@@ -91,7 +91,7 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     from ..models.choose import follows_flow
 
     chosen = ball.by(law_named(law or ball.law))
-    rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
+    rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds, asked=ball.asked)
     shown, between = new_console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
     for line in too_deep(chosen, ball.pair, [row.law.depth for row in rows]):
@@ -101,8 +101,15 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
             say(row.without(name))
     if not (ball.pair.perfectly_plastic or follows_flow(chosen)):
         say(f"{chosen.name} takes the first strength of each metal, not its flow curve")
+    acting = ", ".join(m.name for m in ball.asked.mechanisms)
+    if acting:
+        say(f"with {acting}" + ("; the lines for two balls are without" if between else ""))
     if ball.unused:
-        say(f"not in these parameters: {', '.join(ball.unused)}; `dentscope impact` takes them")
+        but = ", but for what these mechanisms take" if acting else ""
+        left = ", ".join(ball.unused)
+        say(f"not in these parameters{but}: {left}; `dentscope impact` takes them")
+    for line in ball.left_open(chosen):
+        say(line)
     two = ball.second is not None
     cells = table(rows, law=chosen.name, contact="two spheres" if two else "ball on flat")
     cells += table(between, law=chosen.name, contact="two balls")
@@ -126,7 +133,7 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
 
     contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
     speeds = [row.law.speed for row in rows]
-    formula = s.formula_of(law, ball.pair, mass=ball.mass, speeds=speeds)
+    formula = s.formula_of(law, ball.pair, mass=ball.mass, speeds=speeds, asked=ball.asked)
     return {
         "yade_drop.py": s.yade_script(rows, contact),
         **s.mujoco_files(rows, contact),

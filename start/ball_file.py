@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +14,11 @@ from ..core.material import Pair
 from ..core.rig import value_of
 from ..dynamics.files.scenes import curves_in
 from ..dynamics.files.second import SecondSphere
-from ..dynamics.files.setup import FOLLOWING, setup_of
+from ..dynamics.files.setup import FOLLOWING, Setup, setup_of
+from ..dynamics.mechanisms.asked import NONE_ASKED, Asked
+from ..dynamics.scene import Approach
+from ..dynamics.told.band import last_blow
+from ..dynamics.told.flow import lacking
 from ..models import LAWS
 from ..models.base import ContactLaw
 from .case_file import metal_keys, read_pair
@@ -43,6 +47,15 @@ class ExportedBall(NamedTuple):
     law: str  # of ours that knows these metals
     unused: list[str]  # what the file says beyond this
     second: SecondSphere | None = None  # in place of the flat; pair and mass are those of both
+    asked: Asked = NONE_ASKED  # mechanisms that act
+    setup: Setup | None = None  # of `dentscope impact`
+
+    def left_open(self, law: ContactLaw) -> Iterator[str]:
+        """Yield what rate and hardening would change of the file's blow where it says nothing."""
+        if self.setup is not None:
+            found = last_blow(self.setup, law)
+            for what, lack in lacking(self.setup, self.setup.scene(law), found).items():
+                yield f"no {what} is stated; {lack.told(found)}"
 
     def by(self, law: ContactLaw) -> ContactLaw:
         """Return the law as `impact` has it: the smaller of two spheres is the law's."""
@@ -89,14 +102,16 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
     if setup.second is not None:
         used = used | {"target.radius_m", "target.mass_kg", "target.density_kg_m3"}
-    unused = unused_keys(content, used)
+    asked = setup.acting(scene.with_(approach=Approach(scene.approach.speed)))
+    acting = tuple(f"mechanisms.{m.name}" for m in asked.mechanisms)
+    unused = [line for line in unused_keys(content, used) if not line.startswith(acting)]
     radius = ball.radius_m
     if radius is not None and not math.isclose(radius.value, ball.tip_radius_m.value):
         # rounder or flatter at its tip than itself, it is one sphere to these codes
         unused.append(f"strikers.{name}.radius_m = {radius.value:g} beside tip_radius_m")
     return ExportedBall(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
-        unused, setup.second,
+        unused, setup.second, asked, setup,
     )  # fmt: skip
 
 

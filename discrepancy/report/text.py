@@ -33,6 +33,9 @@ _NAMED_LEADING = 3
 # limit: probability from which the finding says what else may act beside what it names [-]
 _BESIDE = 0.1
 
+# limit: probability that a family has beyond a wrong number of it, from which it is told [-]
+_APART = 0.05
+
 # limit: places between which four fifths of a prior lie [-]
 _MIDDLE = np.array([0.1, 0.9])
 _UNTOLD = "not told by these data"
@@ -61,7 +64,7 @@ def _finding(v: Verdict) -> str:
         )
     if v.verdict == WRONG_INPUT:
         beside = _beside(v) or " Nothing else is missing then."
-        return " ".join(map(_wrong, v.wrong_inputs)) + beside
+        return f"{' '.join(map(_wrong, v.wrong_inputs))}{beside}{_family(v)}"
     if v.verdict == "missing-physics":
         first = "".join(f"{_wrong(w)} " for w in v.wrong_inputs)
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
@@ -131,9 +134,12 @@ def _beside(v: Verdict) -> str:
 
 
 def _family(v: Verdict) -> str:
-    """What the members of the leading family agree on, where none of them leads; or ""."""
-    family = v.choice.family
-    if family is None or v.verdict not in ("undetermined", "indistinguishable"):
+    """What the members of the leading family agree on, where one that leads says less; or ""."""
+    family, led = v.choice.family, ("undetermined", "indistinguishable", WRONG_INPUT)
+    if family is None or v.verdict not in led:
+        return ""
+    named = max((w.probability for w in v.wrong_inputs), default=0.0)
+    if family.probability < named + _APART:
         return ""
     members = joined([f"{title_of(m, v.titles)} {percent(p)}" for m, p in family.members.items()])
     return f" What they agree on ({percent(family.probability)}): {family.title}; by {members}."

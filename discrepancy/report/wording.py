@@ -174,7 +174,8 @@ def miss_sentences(located: Located, *, most: int) -> tuple[str, ...]:
         own = [m for m in misses if m.observable == name]
         label, when = OBSERVABLES[name].label, _WHILE.get(own[0].phase, own[0].phase)
         trends = "; ".join(
-            f"{m.trend}, {abs(m.z) / threshold:.1f} times what chance gives" for m in own
+            f"{m.trend}, {abs(m.z) / threshold:.1f} times the largest miss of chance alone"
+            for m in own
         )
         found.append(f"{label[0].upper()}{label[1:]} ({when}): {trends}.")
     return tuple(found)

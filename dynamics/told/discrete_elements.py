@@ -24,7 +24,9 @@ from typing import NamedTuple
 from ...core.errors import InputError
 from ...core.material import Pair
 from ...models.base import ContactLaw
-from ..integrate import strike
+from ..batch import impacts
+from ..integrate import Settings
+from ..mechanisms.asked import NONE_ASKED, Asked
 from ..scene import Approach, Scene, Striker, scene_of
 from .collisions import (
     DASHPOT,
@@ -39,6 +41,8 @@ from .collisions import (
 )
 
 SOFTENED = "hertz-tsuji-softened"
+
+_OF_BLOW = ("peak_depth_m", "peak_force_N", "contact_time_s", "restitution")
 
 
 class Substitute(NamedTuple):
@@ -85,18 +89,18 @@ class ExportedRow(NamedTuple):
 
 
 def substitutes(
-    law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]
+    law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float], asked: Asked = NONE_ASKED
 ) -> list[ExportedRow]:
     """Return the parameters at each speed [m/s] of a ball of mass [kg] on a flat.
 
-    For two balls `two_balls` gives pair and mass. A speed at which nothing comes back is refused.
+    For two balls `two_balls` gives pair and mass; `asked` are mechanisms that act beside the law. A
+    speed at which nothing comes back is refused.
     """
+    scene = ball_scene(law, pair, mass=mass, speed=speeds[0])
+    found = impacts(scene, speeds=speeds, asked=asked, settings=Settings())
     rows = []
-    for speed in speeds:
-        found = strike(ball_scene(law, pair, mass=mass, speed=speed))
-        blow = ExportedBlow(
-            speed, found.peak_depth_m, found.peak_force_N, found.contact_time_s, found.restitution
-        )
+    for speed, *numbers in zip(speeds, *(found[name] for name in _OF_BLOW), strict=True):
+        blow = ExportedBlow(speed, *map(float, numbers))
         if not blow.restitution > 0.0:
             raise InputError(f"nothing comes back at {speed:g} m/s", key="speed")
         rows.append(_row(blow, pair, mass))

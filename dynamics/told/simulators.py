@@ -22,6 +22,7 @@ from ...core.arrays import Array
 from ...core.material import Pair
 from ...models.base import ContactLaw
 from ..batch import impacts
+from ..mechanisms.asked import NONE_ASKED, Asked
 from .collisions import DASHPOT, HUNT
 from .discrete_elements import ExportedRow, Substitute, ball_scene
 
@@ -194,17 +195,19 @@ class Formula(NamedTuple):
         return float((1.0 + (speed / self.v0) ** self.a) ** -self.b)
 
 
-def formula_of(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]) -> Formula:
+def formula_of(
+    law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float], asked: Asked = NONE_ASKED
+) -> Formula:
     """Fit the formula to a law's restitution between the first and the last speed [m/s].
 
-    Around a single one it is a factor of three either way.
+    Around a single one it is a factor of three either way. `asked`: as of `substitutes`.
     """
     first, last = min(speeds), max(speeds)
     if last < 1.5 * first:
         first, last = first / 3.0, 3.0 * last
     v = np.geomspace(first, last, 25)
     scene = ball_scene(law, pair, mass=mass, speed=first)
-    e = np.asarray(impacts(scene, speeds=v)["restitution"], dtype=float)
+    e = np.asarray(impacts(scene, speeds=v, asked=asked)["restitution"], dtype=float)
 
     known = np.log(v)
     middle = float(known[12])

@@ -55,7 +55,7 @@ what is tested but the finite elements.
   on one side, else `not shown`.
 
 Known effects of real recordings, concealed: [interventions](interventions.md); recordings whose
-truth nobody knows: [verdicts](verdicts-real.md). By effect and size, what verdicts turn on, other
+truth nobody knows: [verdicts](verdicts-real.md). By effect and size, other
 methods: [details](proof-details.md).
 """
 

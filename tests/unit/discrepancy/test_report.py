@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from dentscope.discrepancy.choice.families import Family
 from dentscope.discrepancy.findings import WrongInput
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
@@ -81,7 +82,7 @@ def test_a_place_below_chance_is_no_miss() -> None:
     assert located.misses == (miss(1.8),)
     assert miss_sentences(located, most=4) == ()
     (told,) = miss_sentences(Located((miss(6.0),), (), 3.0), most=4)
-    assert "2.0 times what chance gives" in told
+    assert "2.0 times the largest miss of chance alone" in told
 
 
 def test_no_place_and_no_all_clear_says_why() -> None:
@@ -187,6 +188,17 @@ def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> No
     assert (told["value"], told["low"], told["factor"], told["high"]) == (None, 1.12, 1.15, 1.18)
     told = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6).told
     assert (told["value"], told["low"], told["high"]) == (3e8, 2.8e8, 3.2e8)
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.98, True), (0.87, False)])
+def test_what_else_of_its_family_does_as_a_wrong_strength_is_told(share: float, told: bool) -> None:
+    v = said("wrong-input", 0.01, Located((), (), 3.0))
+    number = WrongNumber("target.Sy_Pa", "strength", "the stated strength is wrong", "Pa")
+    v.wrong_inputs, v.mechanisms = (WrongInput(number, 0.85, 2.5e8, 3.4, 3.0, 3.8),), ()
+    v.titles[number.name], v.probabilities = number.title, {number.name: 0.85}
+    each = {number.name: 0.85, "work-hardening": share - 0.85}
+    v.choice.family = Family("strength", "the metal is stronger", share, each)
+    assert ("What they agree on (98 %): the metal is stronger" in headline(v)) is told
 
 
 @pytest.mark.parametrize(("most", "value"), [(0.5, "22 mm"), (0.7, "not told by these data")])

@@ -7,6 +7,7 @@ import pytest
 import tomlkit
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
+from dentscope.dynamics import strike
 from dentscope.dynamics.told.collisions import TSUJI, damping_for
 from dentscope.dynamics.told.discrete_elements import substitutes, two_balls
 from dentscope.dynamics.told.lammps import lammps_lines
@@ -234,6 +235,27 @@ def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, caps
     assert read_ball(file).law == "hardening"
     assert run(["export", "dem", str(file), "--law", "fitted", "--out", str(tmp_path)]) == 0
     assert "fitted takes the first strength of each metal" in capsys.readouterr().out
+
+
+def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, capsys):
+    file = tmp_path / "ball.toml"
+    rate = "\n[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 1.9\nrate_exponent = 0.2\n"
+    plain = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
+    found = {}
+    for name, text in (("without", plain), ("with", plain + rate)):
+        file.write_text(text)
+        ball = read_ball(file)
+        assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
+        told = capsys.readouterr().out
+        assert ("no rate is stated; with that of" in told) == (name == "without")
+        assert ("with strain-rate-hardening; the lines for two" in told) == (name == "with")
+        (row,) = substitutes(
+            LAWS["fitted"], ball.pair, mass=ball.mass, speeds=ball.speeds, asked=ball.asked
+        )
+        found[name] = row.law.restitution
+        blow = strike(ball.setup.scene(LAWS["fitted"]))
+        assert found[name] == pytest.approx(blow.restitution, rel=1e-3)
+    assert found["with"] > 1.2 * found["without"]
 
 
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, capsys):
