@@ -20,7 +20,7 @@ Mask = NDArray[np.bool_]
 def numbers(given: ArrayLike, *, key: str, allowed: str, source: str = "") -> Array:
     """Return numbers, one or several, as an array of their shape.
 
-    Raises `InputError`: text such as "20 um", `True`, or anything else that is no number.
+    Raises `InputError`: text such as "20 um", `True`, a masked value, or what else is no number.
 
     Examples
     --------
@@ -28,8 +28,9 @@ def numbers(given: ArrayLike, *, key: str, allowed: str, source: str = "") -> Ar
     Traceback (most recent call last):
     dentscope.core.errors.InputError: depth: '20 um' (allowed: depths [m])
     """
+    masked = any(map(np.ma.is_masked, given if isinstance(given, list | tuple) else (given,)))
     try:
-        found = np.asarray(given)
+        found = np.asarray(None if masked else given)  # numpy would take what a mask hides
         right = found.dtype.kind in "iuf"
     except ValueError:  # rows of several lengths
         right = False

@@ -118,6 +118,8 @@ def test_columns_have_the_names_of_trials_and_go_to_files(tmp_path: Path) -> Non
     [
         ({"speeds": [1.0, -1.0]}, "speed: -1"),
         ({"speeds": math.nan}, "speed: nan"),
+        ({"speeds": np.ma.array([1.0, 2.0], mask=[False, True])}, "speed: masked_array(data=[1.0"),
+        ({"angles": [1.0, np.ma.masked]}, "angle: [1.0, masked]"),
         ({"angles": 3.0}, "angle: 3"),
         ({"friction": -0.1}, "friction: -0.1"),
         ({"masses": 0.0}, "mass: 0"),
