@@ -10,7 +10,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.inputs.templates import template, write_new
-from ..core.output import write_figure
+from ..core.output import write_csv, write_figure
 from .laws import laws_named
 from .shared.places import folder_option, misused, refuse_beside
 from .shared.terminal import new_console, say, show_table, tell_first_use
@@ -59,7 +59,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     read_toml(path)  # what is no TOML is told before the simulation is loaded
     from ..dynamics.files.blow import blow_of
     from ..dynamics.files.setup import read_setup
-    from ..dynamics.files.tables import write_csv, write_hdf5
+    from ..dynamics.files.tables import write_hdf5
     from ..dynamics.told.picture import picture
 
     console = new_console()
@@ -78,7 +78,8 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
         console.print(f"{name}: {against}", soft_wrap=True)
     for line in (*([] if exact else blow.rules()), *blow.checks()):
         say(line)
-    write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
+    rows = blow.written(exact=exact)
+    write_csv(out / f"{path.stem}.csv", rows, header=rows[0])
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
     write_figure(picture(blow, exact=exact), out / f"{path.stem}.png", dpi=130)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.inputs.templates import INVERSE, write_new
+from ..core.output import write_csv
 from .shared.places import folder_option, misused, refuse_beside
 from .shared.terminal import new_console, show_table
 
@@ -41,7 +42,6 @@ def inverse(
 
     read_toml(file)  # what is no TOML is told before the simulation is loaded
     from ..dynamics.files.inverse_file import read_inverse
-    from ..dynamics.files.tables import write_csv
 
     console = new_console()
     rows = read_inverse(file)
@@ -60,7 +60,8 @@ def inverse(
         for line in row.inferred.objections:
             console.print(f"  {row.name}: {line}", soft_wrap=True)
     written = out / f"{file.stem}-inverse.csv"
-    write_csv(written, [_csv_row(row) for row in rows])
+    cells = [_csv_row(row) for row in rows]
+    write_csv(written, cells, header=cells[0])
     console.print(f"written: {written}", soft_wrap=True)
 
 

@@ -19,7 +19,7 @@ import os
 import stat
 import time
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -182,6 +182,12 @@ def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
     writer.writerow(header)
     writer.writerows([inert(c) if isinstance(c, str) else c for c in row] for row in rows)
     return stream.getvalue()
+
+
+def write_csv(path: Path, rows: Iterable[Mapping[str, Any]], *, header: Collection[str]) -> Path:
+    """Write rows by their names, floats with all digits; an empty cell where there is no number."""
+    cells = (["" if row[name] != row[name] else row[name] for name in header] for row in rows)
+    return write_file(path, csv_text(cells, header=header))
 
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..core.arrays import Array
 from ..core.errors import InputError
-from ..core.output import csv_text, write_file
+from ..core.output import write_csv, write_file
 from ..core.tables import frame, html_table, parquet, text_table
 
 if TYPE_CHECKING:
@@ -85,8 +85,7 @@ class Impacts:
 
     def to_csv(self, path: Path | str) -> None:
         """Write a CSV file, floats with all digits; an empty cell where there is no number."""
-        rows = (["" if x != x else x for x in row.values()] for row in self.rows())
-        write_file(Path(path), csv_text(rows, header=self.columns))
+        write_csv(Path(path), self.rows(), header=self.columns)
 
     def frame(self) -> Any:
         """Return a pandas data frame; refused without pandas."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from ...core.observables import OBSERVABLES
-from ...core.output import csv_text, write_file
+from ...core.output import write_file
 from ...core.provenance import environment
 from ..integrate import Trace
 from ..result import Impact
@@ -37,12 +37,6 @@ SHOWN = (
 
 EXACT = ("contacts", "energy_residual", "momentum_residual")
 """What has no standard deviation: counts, and what a balance leaves over."""
-
-
-def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write rows that share their keys; floats with all digits."""
-    header = list(rows[0])
-    write_file(path, csv_text(([row[name] for name in header] for row in rows), header=header))
 
 
 def impact_row(impact: Impact) -> dict[str, Any]:

@@ -43,6 +43,10 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
     assert run(["impact", str(file), "--law", "fitted", "--out", str(out)]) == EXIT_NOT_CONVERGED
     told = capsys.readouterr().out
     assert "2 impacts of the sweep did not end: see the column outcome" in told
+    for name in ("ball", "ball-sweep"):
+        text = (out / f"{name}.csv").read_text()
+        assert "nan" not in text
+        assert {row["restitution"] for row in csv.DictReader(text.splitlines())} == {""}
     assert "changes nothing" not in told
     assert not (out / "ball-sweep.png").exists()
 
