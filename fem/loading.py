@@ -6,6 +6,7 @@ mesh made for the present radius takes over at the same approach (`remesh`).
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -126,11 +127,16 @@ class Loading:
         return self.accuracy.elastic_step_ratio if elastic else self.accuracy.step_ratio
 
     def _stuck(self, point: PathPoint) -> Outcome:
+        firm = math.isinf(self.problem.pair.flat.strength)
+        to, flat = RULES.reach[firm], "does not yield" if firm else "yields"
+        advice = "Try a finer or coarser accuracy level"
+        if point.delta > 0.5 * to:
+            advice = f"Go less deep: where the flat {flat} the method ends at some Delta/R = {to:g}"
         return Outcome(
             Ending.NOT_CONVERGED,
             f"no equilibrium beyond Delta/R = {point.delta:.4g} (a/R = "
             f"{point.record.reading.radius:.3f}), however short the step.",
-            "Try a finer or coarser accuracy level; the results up to there hold.",
+            f"{advice}; the results up to there hold.",
         )
 
     def _solver(self) -> Solver:
