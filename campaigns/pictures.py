@@ -19,11 +19,13 @@ _APPROACH = r"approach over that at first yield $\delta/\delta_c$"
 def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     """Draw all completed cases into `folder`; return the files."""
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm
+    from matplotlib.colors import LinearSegmentedColormap, LogNorm
 
     made, axes = figure(2, 2, size=(10, 8))
     many = len(records) > _PAIRS_NAMED
-    shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
+    # dark in its middle: equal strengths stand out from the white page
+    hues = LinearSegmentedColormap.from_list("", ["deepskyblue", "blue", "black", "red", "orange"])
+    shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), hues)
     for record in records:
         pair = record.case.pair
         c = record.curve
