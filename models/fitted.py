@@ -193,18 +193,21 @@ class ClosedForm(ContactLaw):
                 continue  # elastic: Hertz
             if p.sphere.flow is not None or p.flat.flow is not None:
                 return "knows the strength of first yield only; `hardening` follows a flow curve"
-            found = {
-                "Sy_ratio": (p.Sy_ratio,),
-                "E_reduced_over_Sy_min": (p.E_reduced / p.Sy_min,),
-                "nu": tuple(b.nu for b in (p.sphere, p.flat) if not b.rigid),
-                "elastic_share": (p.elastic_share,),
-                "Delta_over_R": (deepest / p.R,),
-            }
-            for key, values in found.items():
+            found: dict[str, tuple[str, *tuple[float, ...]]] = {
+                "Sy_ratio": ("yield strength of the sphere over that of the flat", p.Sy_ratio),
+                "E_reduced_over_Sy_min": (
+                    "reduced modulus over the lesser yield strength", p.E_reduced / p.Sy_min
+                ),
+                "nu": ("Poisson's ratio", *(b.nu for b in (p.sphere, p.flat) if not b.rigid)),
+                "elastic_share": ("sphere's share of the elastic approach", p.elastic_share),
+                "Delta_over_R": ("approach over the radius", deepest / p.R),
+            }  # fmt: skip
+            for key, (words, *values) in found.items():
                 low, high = self.limits.get(key, (-math.inf, math.inf))
                 for value in values:
                     if not low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9):
-                        return f"{key} = {value:.4g} is outside {low:.4g} to {high:.4g}"
+                        told = f"{words} ({key}) = {value:.4g}"
+                        return f"{told} is outside {low:.4g} to {high:.4g}"
         return ""
 
 

@@ -25,7 +25,7 @@ from ..result import Impact
 from ..scene import Scene
 from .band import last_blow, repeated
 from .effect import effect
-from .flat import bending, flat_checks, with_waves
+from .flat import FREE_PLATE, bending, flat_checks, with_waves
 from .flow import Lack, flow_checks, lacking
 from .onset import as_strong, effective_mass, first_yield_speed, largest_mean_pressure
 
@@ -59,7 +59,7 @@ def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
         if setup.file.target.thickness_m and "support" not in setup.content.get("impact", {}):
             waves = with_waves(setup, scene)
     if waves is not None:
-        lacks["plate"] = Lack("hung freely as a wide plate", (waves,), "impact.support")
+        lacks["plate"] = Lack(FREE_PLATE, (waves,), "impact.support")
     return {
         what: one
         for what, one in lacks.items()

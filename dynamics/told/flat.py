@@ -22,6 +22,9 @@ from .onset import effective_mass
 if TYPE_CHECKING:
     from ..files.setup import Setup
 
+FREE_PLATE = "with nothing behind the plate and its edges far, waves in it take energy"
+"""What a plate without a stated support might be."""
+
 _THICK = 8.0
 """Thickness over the depth of a dent that counts as thick [-] (ISO 6506-1, 6.3)."""
 
@@ -147,5 +150,5 @@ def _waves(setup: Setup, scene: Scene, found: Impact, lacks: Mapping[str, Lack])
         if setup.file.impact.support == "plate":
             where = "with waves across its thickness too (mechanisms.half-space-waves)"
         elif setup.file.target.thickness_m:
-            where = "hung freely as a wide plate"
+            where = FREE_PLATE
         yield f"{where}: {effect(waves, found)}"

@@ -159,9 +159,11 @@ def test_derivatives_agree_with_differences(law):
 
 def test_leaving_the_domain_names_the_bound():
     law = replace(LAWS["fitted"], limits={"Sy_ratio": (0.1, 10.0), "Delta_over_R": (0.0, 0.1)})
-    with pytest.warns(DomainWarning, match="Sy_ratio = 50 is outside 0.1 to 10"):
+    words = "yield strength of the sphere over that of the flat"
+    with pytest.warns(DomainWarning, match=rf"{words} \(Sy_ratio\) = 50 is outside 0.1 to 10"):
         law.loading(pair_of(2e11, 2e11, 3e8, 50.0), 1e-5)
-    with pytest.warns(DomainWarning, match="Delta_over_R = 0.2 is outside 0 to 0.1"):
+    words = "approach over the radius"
+    with pytest.warns(DomainWarning, match=rf"{words} \(Delta_over_R\) = 0.2 is outside 0 to 0.1"):
         law.loading(pair_of(2e11, 2e11, 3e8, 5.0), 2e-4)
 
 
