@@ -32,6 +32,11 @@ from .rules import RULES
 _LEAST_STEP_RATIO = 1.0 + 1e-6
 
 
+# limit: approach at which paths end where the flat yields, and where it does not [R]: of paths to
+# 0.5; of one that ends beyond half of it no accuracy level would find more
+_REACH = (0.15, 0.47)
+
+
 @dataclass
 class Tally:
     """Counts of one solve."""
@@ -128,7 +133,7 @@ class Loading:
 
     def _stuck(self, point: PathPoint) -> Outcome:
         firm = math.isinf(self.problem.pair.flat.strength)
-        to, flat = RULES.reach[firm], "does not yield" if firm else "yields"
+        to, flat = _REACH[firm], "does not yield" if firm else "yields"
         advice = "Try a finer or coarser accuracy level"
         if point.delta > 0.5 * to:
             advice = f"Go less deep: where the flat {flat} the method ends at some Delta/R = {to:g}"

@@ -90,10 +90,6 @@ class FemRules:
         "iterations",
     )  # fmt: skip
     deepest: float = rule(0.5, "largest approach that can be asked for [R]")
-    reach: tuple[float, float] = rule(
-        (0.15, 0.47), "approach at which paths end where the flat yields, where it does not [R]",
-        "paths to 0.5; of one that ends beyond half of it no accuracy level would find more",
-    )  # fmt: skip
     gap_edges: int = rule(5, "open surface elements that the fit of the gap looks at [-]")
     edge_candidates: int = rule(161, "places of the contact edge that the fit of the gap tries [-]")
     steps_beyond: int = rule(
