@@ -25,7 +25,7 @@ from .fall import Ball
 from .flights import Piece
 from .joint import SHARED, Before, JointSolution, fit_together
 from .scale import check_scale, floor_drift, frames_lost, scale_of
-from .sides import joined, known_before, sides_of, true_contacts, usual_spread
+from .sides import Sides, joined, known_before, sides_of, true_contacts, usual_spread
 from .touch import (
     common_durations,
     likely_durations,
@@ -95,11 +95,21 @@ def find_bounces(
     sides = sides_of(body, contacts, stage, None)
     if usual_spread(sides) > RULES.same_flat * stage.reach:  # noise turns everywhere
         return None
-    before = known_before(body, sides, ball, metres, stage)
-    if before is None:
-        return None
+    found = (
+        _found_with(before, body, chosen, contacts, sides, stage, ball, metres, contact)
+        for before in known_before(body, sides, ball, metres, stage)
+    )
+    # where a wrong drag is believed, flights are left out
+    return max(filter(None, found), key=lambda one: len(one.bounces), default=None)
+
+
+def _found_with(
+    before: Before, body: Track, chosen: Indices, contacts: list[int], sides: Sides, stage: Stage,
+    ball: Ball, metres: Measured | None, contact: Measured | None,
+) -> Bounced | None:  # fmt: skip
+    """Return what `find_bounces` finds with one belief of fall and drag."""
     view = View(before.fall.value, before.drag.value, 0.0, 0.0, 0.0)
-    contacts, sides = true_contacts(body, contacts, stage, before.fall.value, sides)
+    contacts, sides = true_contacts(body, contacts, stage, before, sides)
     for again in reversed(range(RULES.contact_rounds)):
         if not any(a and b for a, b in zip(sides[::2], sides[1::2], strict=True)):
             return None
@@ -221,8 +231,10 @@ def _bounce(
     if not (approach.value > 0.0 and rebound.value > 0.0):
         return None
     fall = abs(solutions[0].view.fall)
-    late = [fall * e for e in touch.errors]
     values = (approach.value, rebound.value)
+    # drag works against gravity on the way down and with it on the way up
+    falls = fall - view.drag * values[0] ** 2, fall + view.drag * values[1] ** 2
+    late = [abs(f) * e for f, e in zip(falls, touch.errors, strict=True)]
     bridged = []
     for gap, piece, speed in zip(meeting.gaps, (before, after), values, strict=True):
         lasts = piece.duration(body.time)
@@ -230,7 +242,7 @@ def _bounce(
             fall * RULES.uneven_fall * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
         ))  # fmt: skip
     more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
-    both = touch.ratio_error(fall, *values)
+    both = touch.ratio_error(falls, *values)
     part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
     # the flights meet below the flat where a contact takes time
     height = replace(height, value=height.value - touch.offsets[0] * approach.value)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.drag import DRAG_COEFFICIENT_STD
 from ..measured import Measured
 from ..rules import RULES
@@ -51,11 +52,15 @@ def usual_spread(sides: Sides) -> float:
 
 def known_before(
     body: Track, sides: Sides, ball: Ball, metres: Measured | None, stage: Stage
-) -> Before | None:
-    """Return what is known of fall and drag; the fall by the flights where no scale is given."""
+) -> list[Before]:
+    """Return what is known of fall and drag; the fall by the flights where no scale is given.
+
+    Where the flights of a body not known differ as none do in air, it may fall in a liquid, or be
+    led by a hand: what is known then comes first for the one, then for the other.
+    """
     own = [own_fall(body, s) for s in sides if s is not None]
     if not own:
-        return None
+        return []
     if metres is not None and math.isfinite(metres.value):
         value = ball.fall(3.0).gravity / metres.value
         fall = Measured(value, value * math.hypot(RULES.stated_size, metres.std / metres.value))
@@ -63,10 +68,10 @@ def known_before(
         value = _shared_fall(own)
         fall = Measured(value, 100.0 * (abs(value) + min(f.std for f in own)))
     known = value > 5.0 * min(f.std for f in own) or metres is not None
-    speeds = [abs(s.launch.speed) for s in sides if s is not None]
-    fastest = max(math.sqrt(2.0 * abs(value) * stage.reach), *speeds)
+    speeds = np.array([s.launch.speed for s in sides if s is not None])
+    fastest = max(math.sqrt(2.0 * abs(value) * stage.reach), np.abs(speeds).max())
     if not known or not value > 0.0:
-        return Before(fall, Measured(0.0, 1e-9 / stage.reach))
+        return [Before(fall, Measured(0.0, 1e-9 / stage.reach))]
     unit = ball.fall(3.0).gravity / value
     drifts = (
         min(stage.reach * unit / RULES.drift_height, 1.0),
@@ -74,10 +79,24 @@ def known_before(
     )
     flight = ball.fall(RULES.drag_speed * fastest * unit)
     if math.isinf(flight.terminal):
-        drag = 0.5 * RULES.free_drag * value / fastest**2
-        return Before(fall, Measured(drag, drag), *drifts)
+        drags, shown = [0.5 * RULES.free_drag * value / fastest**2], _braking(own, speeds)
+        if shown.value - RULES.by_chance * shown.std > RULES.fall_off * value / fastest**2:
+            drags.insert(0, shown.value)
+        return [Before(fall, Measured(drag, drag), *drifts) for drag in drags]
     drag = flight.gravity / flight.terminal**2 * unit
-    return Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag), *drifts)
+    return [Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag), *drifts)]
+
+
+def _braking(own: Sequence[Measured], speeds: Array) -> Measured:
+    """Return by how much flights next to each other fall otherwise for their speeds [1/unit]."""
+    squares = np.diff(speeds * np.abs(speeds))
+    if not squares.any():
+        return Measured(0.0, np.inf)
+    values, errors = np.array([(v.value, v.std**2) for v in own]).T
+    whole = float(squares @ squares)  # pairs count by it, so that rest says nothing
+    drag = float(squares @ np.diff(values)) / whole
+    scatter = errors[1:] + errors[:-1] + (np.diff(values) - drag * squares) ** 2
+    return Measured(drag, math.sqrt(squares**2 @ scatter) / whole)
 
 
 def _shared_fall(own: Sequence[Measured]) -> float:
@@ -95,21 +114,21 @@ def _shared_fall(own: Sequence[Measured]) -> float:
 
 
 def true_contacts(
-    body: Track, contacts: list[int], stage: Stage, fall: float, sides: Sides
+    body: Track, contacts: list[int], stage: Stage, before: Before, sides: Sides
 ) -> tuple[list[int], Sides]:
     """Leave out what is no flight, and of two turning points without a flight between them one.
 
     A run of strays turns as a contact does; the one that leaves flights on both sides is kept.
     """
     every, falls = sides, _Falls(body)
-    sides = _same_fall(falls, every, fall, stage)
+    sides = _same_fall(falls, every, before, stage)
     k = 0
     while k + 1 < len(contacts):
         if sides[2 * k + 1] is None and sides[2 * k + 2] is None:
             tried = []
             for other in (k, k + 1):
                 left, kept = _without(body, contacts, every, other, stage)
-                found = _same_fall(falls, kept, fall, stage)
+                found = _same_fall(falls, kept, before, stage)
                 pair = found[2 * k : 2 * k + 2]
                 size = sum(p.index.size for p in pair if p) if all(pair) else 0
                 tried.append((size, left, kept, found))
@@ -148,8 +167,9 @@ class _Falls:
         return self._found[id(piece)][1]
 
 
-def _same_fall(falls: _Falls, sides: Sides, fall: float, stage: Stage) -> Sides:
+def _same_fall(falls: _Falls, sides: Sides, before: Before, stage: Stage) -> Sides:
     """Leave out rest, rolling and what else is no flight: its acceleration is not that of all."""
+    fall = before.fall.value
     most = max(RULES.foreign * usual_spread(sides), RULES.coarse * stage.reach)
     kept: Sides = []
     for piece in sides:
@@ -159,7 +179,9 @@ def _same_fall(falls: _Falls, sides: Sides, fall: float, stage: Stage) -> Sides:
         own = falls.of(piece)
         allowed = max(4.0 * own.std, RULES.fall_off * abs(fall))
         straight = piece.straight(falls.body.time, fall)
-        kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
+        speed = piece.launch.speed
+        off = own.value - fall - before.drag.value * speed * abs(speed)
+        kept.append(piece if straight or abs(off) <= allowed else None)
     return kept
 
 

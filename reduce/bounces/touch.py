@@ -30,9 +30,9 @@ class Touch(NamedTuple):
     errors: tuple[float, float]
     whole: bool
 
-    def ratio_error(self, fall: float, approach: float, rebound: float) -> float:
+    def ratio_error(self, falls: Sequence[float], approach: float, rebound: float) -> float:
         """Return the relative error of the restitution: both speeds fall with the duration."""
-        parts = fall * self.errors[0] / approach, fall * self.errors[1] / rebound
+        parts = falls[0] * self.errors[0] / approach, falls[1] * self.errors[1] / rebound
         return abs(parts[1] - parts[0]) if self.whole else math.hypot(*parts)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, pairwise
 from pathlib import Path
@@ -268,27 +268,32 @@ def cells_of(
     lines: Sequence[str], source: str, *, separator: str = ""
 ) -> tuple[str, list[list[str]]]:
     """Return the separator of a text table and its cells as written; refuse what is none."""
+    separator = separator or _separator(lines, source)
+    return separator, [[cell.strip() for cell in row] for row in _split(lines, source, separator)]
+
+
+def _split(lines: Sequence[str], source: str, by: str, above: int = 0) -> Iterator[list[str]]:
+    """The cells of lines with others above them; blanks separate as many as there are."""
+    if by == " ":
+        yield from (line.split() for line in lines)
+        return
+    reader = csv.reader(lines, delimiter=by, skipinitialspace=True)
     try:
-        separator = separator or _separator(lines)
-        rows = list(_split(lines, separator))
+        yield from reader
     except csv.Error as error:
-        raise InputError(f"not a table ({error})", source=source, allowed="a table") from None
-    return separator, [[cell.strip() for cell in row] for row in rows]
+        raise InputError(
+            f"not a table ({error})", source=source, key=f"row {above + reader.line_num}",
+            allowed="a table",
+        ) from None  # fmt: skip
 
 
-def _split(lines: Sequence[str], separator: str) -> Iterable[list[str]]:
-    """The cells of lines; blanks separate as many as there are."""
-    if separator == " ":
-        return (line.split() for line in lines)
-    return csv.reader(lines, delimiter=separator, skipinitialspace=True)
-
-
-def _separator(lines: Sequence[str]) -> str:
+def _separator(lines: Sequence[str], source: str) -> str:
     """The separator that splits the middle of the file into the most numbers."""
-    sample = lines[len(lines) // 3 :][:40] or lines
+    above = len(lines) // 3
+    sample = lines[above:][:40]
 
     def numbers(separator: str) -> tuple[int, bool]:
-        cells = [cell.strip() for line in _split(sample, separator) for cell in line]
+        cells = [c.strip() for row in _split(sample, source, separator, above) for c in row]
         between = commas_between(cells, separator)
         found = [np.isfinite(value_of(plain(cell, between))) for cell in cells if cell]
         # decimal commas between blanks are as many numbers between commas, and words beside them

@@ -25,6 +25,14 @@ CASES = {
     "table: empty": ("table", "", ["--holds", "force"], "a.csv"),
     "table: words": ("table", "a,b\nc,d\n", ["--holds", "force"], "no row of numbers"),
     "table: binary": ("table", b"\x00\x01\x02" * 50, ["--holds", "force"], "not text"),
+    # behind the lines by which the separator is told, and among them
+    "table: a field too long": (
+        "table", PULSE + "9" * 131_073, ["--holds", "force"], "row 102: not a table"
+    ),
+    "table: a field too long in the middle": (
+        "table", PULSE.replace("0.0040,", "0.0040," + "9" * 131_073), ["--holds", "force"],
+        "row 42: not a table",
+    ),
     "table: no contents said": ("table", PULSE, [], "--holds"),
     "table: unknown contents": ("table", PULSE, ["--holds", "forces"], "holds"),
     "table: no such column": ("table", PULSE, ["--holds", "force", "--value", "load"], "value"),

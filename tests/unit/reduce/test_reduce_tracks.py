@@ -168,6 +168,46 @@ def test_gravity_and_a_stated_size_that_disagree_are_both_held():
     assert not scale_of(Measured(math.nan, math.nan), 9.81, None).known
 
 
+@pytest.mark.parametrize(
+    ("terminal", "restitution", "contacts"),
+    [(1.2, 0.5, 2), (1.8, 0.8, 4), (1.2, 0.9, 4), (3.0, 0.5, 2), (math.inf, 0.8, 4)],
+)
+def test_a_body_that_a_liquid_brakes_keeps_its_contacts(terminal, restitution, contacts):
+    """Dropped by 0.25 m; its buoyancy, which leaves 8.05 m/s², is told or not."""
+    fall, time, parts = Fall(8.05, terminal), np.arange(0.0, 4.0, 0.002), []
+    start, launch = 0.0, fall.rise(0.25)
+    for k in range(contacts + 1):
+        end = start + fall.duration(launch)
+        here = time[(time >= start) & (time < end)]
+        height, speed = flight(here - start, 0.0, launch, 8.05, 8.05 / terminal**2)
+        parts.append(np.stack([here, height])[:, (speed < 0.0) | (k > 0)])
+        start, launch = end, restitution * fall.landing(launch)
+    time, height = np.concatenate(parts, axis=1)
+    track = Track(time, height + np.random.default_rng(3).normal(0.0, 1e-4, time.size))
+    for gravity in (8.05, 9.81):
+        ball = Ball(gravity, None, None, air())
+        found = find_bounces(track, ball, metres=Measured(1.0, 0.0))
+        assert len(found.bounces) == contacts
+        for bounce in found.bounces:
+            off = bounce.restitution.value - restitution
+            assert abs(off) < 2.0 * bounce.restitution.std < 0.05
+
+
+def test_a_body_that_a_hand_sets_down_bounces_in_air():
+    """It comes down with 1 m/s as at the terminal speed of a liquid; its flights tell of none."""
+    time = np.arange(0.0, 1.2, 0.002)
+    height, start, launch = 0.25 - time, 0.25, 0.8
+    while launch > 0.2:
+        late = time - start
+        height = np.where(late < 0.0, height, launch * late - 4.905 * late**2)
+        start, launch = start + launch / 4.905, 0.8 * launch
+    height = np.where(time < start, height, 0.0) + np.random.default_rng(1).normal(0.0, 1e-4, 600)
+    found = find_bounces(Track(time, height), UNKNOWN, metres=Measured(1.0, 0.0))
+    assert len(found.bounces) >= 3
+    for bounce in found.bounces:
+        assert abs(bounce.restitution.value - 0.8) < 2.0 * bounce.restitution.std < 0.03
+
+
 def test_noise_that_turns_everywhere_is_no_track_and_none_of_its_turns_is_tried(monkeypatch):
     height = 1e-7 * np.random.default_rng(1).normal(size=3000)
     monkeypatch.setattr(contacts, "true_contacts", None)

@@ -141,7 +141,7 @@ def test_what_is_known_of_fall_and_drag_before_a_track_is_looked_at() -> None:
     """A pixel of a millimetre, 50 of them high and 0.4 s long; nobody says what falls."""
     track, piece = thrown()
     ball = BallOptions(gravity_m_s2=9.81).ball_of(None)
-    found = known_before(track, [piece], ball, Measured(1e-3, 0.0), STAGE)
+    (found,) = known_before(track, [piece], ball, Measured(1e-3, 0.0), STAGE)
     assert found.fall.value == pytest.approx(9810.0)
     assert found.fall.std == pytest.approx(0.02 * 9810.0)
     # the fastest falls from 50 pixels: half of a tenth over twice the height
@@ -164,7 +164,8 @@ def test_a_flight_spreads_six_times_as_much_as_others_or_a_hundredth_of_the_reac
 ) -> None:
     track, piece = thrown()
     sides = [Piece(piece.index, 0.2, piece.launch, s) for s in (usual, usual, usual, sigma)]
-    assert (_same_fall(_Falls(track), sides, 9810.0, STAGE)[3] is not None) == kept
+    before = Before(Measured(9810.0, 0.0), Measured(0.0, 0.0))
+    assert (_same_fall(_Falls(track), sides, before, STAGE)[3] is not None) == kept
 
 
 @pytest.mark.parametrize(("fall", "straight"), [(0.99, True), (1.01, False)])
