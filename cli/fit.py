@@ -96,10 +96,7 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> 
     page = write_report(result, content, found.table, found.turns, out, validation=found.validation)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
-        _publish(content)
-        for name in ("errors", "maps"):
-            picture = _PAGE.parent / "pictures" / f"fitted-{name}.png"
-            write_file(picture, (out / f"{name}.png").read_bytes())
+        _publish(content, out)
         console.print("the closed forms now use these coefficients")
     if not result.fit.outcome.completed:
         console.print(str(result.fit.outcome))
@@ -124,7 +121,7 @@ def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish:
     written = write_coefficients(content, out / "fitted.json")
     console.print(f"coefficients: {written}")
     if publish:
-        _publish(content)
+        _publish(content, None)
         console.print("the law of metals that harden now uses these coefficients")
     return 0
 
@@ -139,14 +136,18 @@ def _show_hardening(console: Console, content: dict[str, Any]) -> None:
     _show(console, uncertainty_rows({k: one["within"] for k, one in found["judged"].items()}))
 
 
-def _publish(content: dict[str, Any]) -> None:
-    """Put the coefficients where the laws read them, and their tables into their page."""
+def _publish(content: dict[str, Any], drawn: Path | None) -> None:
+    """Put coefficients where laws read them; tables, and what was `drawn`, into their page."""
     from ..fitting.coefficients import write_coefficients
     from ..models.coefficients import COEFFICIENTS_FILE
     from ..studies.closed_form.page import published_section, update_page
 
     write_coefficients(content, COEFFICIENTS_FILE)
     update_page(_PAGE, published_section(content))
+    for name in ("errors", "maps"):
+        if drawn is not None:
+            picture = _PAGE.parent / "pictures" / f"fitted-{name}.png"
+            write_file(picture, (drawn / f"{name}.png").read_bytes())
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:

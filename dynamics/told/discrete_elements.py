@@ -42,8 +42,6 @@ from .collisions import (
 
 SOFTENED = "hertz-tsuji-softened"
 
-_OF_BLOW = ("peak_depth_m", "peak_force_N", "contact_time_s", "restitution")
-
 
 class Substitute(NamedTuple):
     """A discrete-element law with its parameters and what it makes of the blow."""
@@ -99,8 +97,11 @@ def substitutes(
     scene = ball_scene(law, pair, mass=mass, speed=speeds[0])
     found = impacts(scene, speeds=speeds, asked=asked, settings=Settings())
     rows = []
-    for speed, *numbers in zip(speeds, *(found[name] for name in _OF_BLOW), strict=True):
-        blow = ExportedBlow(speed, *map(float, numbers))
+    for k, speed in enumerate(speeds):
+        blow = ExportedBlow(
+            speed, float(found["peak_depth_m"][k]), float(found["peak_force_N"][k]),
+            float(found["contact_time_s"][k]), float(found["restitution"][k]),
+        )  # fmt: skip
         if not blow.restitution > 0.0:
             raise InputError(f"nothing comes back at {speed:g} m/s", key="speed")
         rows.append(_row(blow, pair, mass))

@@ -341,7 +341,9 @@ def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_p
         file.write_text(tomlkit.dumps(content))
         try:
             ball = read_ball(file)
-            told.append(repr((ball, asdict(ball.pair))))
+            # the set-up holds every key, and what is around a mechanism most
+            given = ball._replace(setup=None, asked=ball.asked.constants)
+            told.append(repr((given, asdict(ball.pair))))
         except InputError as error:
             told.append(str(error))
     refused = "a rod" in told[0] or "a second sphere" in told[0]
