@@ -6,7 +6,6 @@ mesh made for the present radius takes over at the same approach (`remesh`).
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -30,11 +29,6 @@ from .rules import RULES
 # limit: ratio of depths below which the path stands still, whatever converges [-]: a million
 # steps would follow
 _LEAST_STEP_RATIO = 1.0 + 1e-6
-
-
-# limit: approach at which paths end where the flat yields, and where it does not [R]: of paths to
-# 0.5; of one that ends beyond half of it no accuracy level would find more
-_REACH = (0.15, 0.47)
 
 
 @dataclass
@@ -132,16 +126,12 @@ class Loading:
         return self.accuracy.elastic_step_ratio if elastic else self.accuracy.step_ratio
 
     def _stuck(self, point: PathPoint) -> Outcome:
-        firm = math.isinf(self.problem.pair.flat.strength)
-        to, flat = _REACH[firm], "does not yield" if firm else "yields"
-        advice = "Try a finer or coarser accuracy level"
-        if point.delta > 0.5 * to:
-            advice = f"Go less deep: where the flat {flat} the method ends at some Delta/R = {to:g}"
         return Outcome(
             Ending.NOT_CONVERGED,
             f"no equilibrium beyond Delta/R = {point.delta:.4g} (a/R = "
             f"{point.record.reading.radius:.3f}), however short the step.",
-            f"{advice}; the results up to there hold.",
+            "Go less deep (docs/case.md: how deep this goes), or try another accuracy level; the "
+            "results up to there hold.",
         )
 
     def _solver(self) -> Solver:

@@ -135,11 +135,9 @@ def _beside(v: Verdict) -> str:
 
 def _family(v: Verdict) -> str:
     """What the members of the leading family agree on, where one that leads says less; or ""."""
-    family, led = v.choice.family, ("undetermined", "indistinguishable", WRONG_INPUT)
-    if family is None or v.verdict not in led:
-        return ""
-    named = max((w.probability for w in v.wrong_inputs), default=0.0)
-    if family.probability < named + _APART:
+    family, named = v.choice.family, max((w.probability for w in v.wrong_inputs), default=0.0)
+    open_ones = ("undetermined", "indistinguishable", WRONG_INPUT)
+    if not family or v.verdict not in open_ones or family.probability < named + _APART:
         return ""
     members = joined([f"{title_of(m, v.titles)} {percent(p)}" for m, p in family.members.items()])
     return f" What they agree on ({percent(family.probability)}): {family.title}; by {members}."

@@ -1,7 +1,6 @@
 """The mesh that follows the contact: its rings, and the transfer from one mesh to the next."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -143,20 +142,6 @@ def test_an_elastic_path_over_several_meshes_ends_where_the_direct_solution_does
     for name in ("force", "radius", "sphere", "flat"):
         ours, plain = (getattr(p.record.reading, name) for p in (moved, direct))
         assert ours == pytest.approx(plain, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("flat", "depth", "advice"),
-    [(STEEL, 0.12, "Go less deep: where the flat yields the method ends at some Delta/R = 0.15"),
-     (ELASTIC, 0.4,
-      "Go less deep: where the flat does not yield the method ends at some Delta/R = 0.47"),
-     (ELASTIC, 0.12, "Try a finer or coarser accuracy level")],
-)  # fmt: skip
-def test_a_path_that_ends_near_the_limit_of_the_method_names_it(flat, depth, advice):
-    problem = fem.ContactProblem(Pair(STEEL, flat, 1e-3), (0.2,))
-    record = SimpleNamespace(reading=SimpleNamespace(radius=0.5))
-    end = Loading(problem, SETTINGS, Tally())._stuck(SimpleNamespace(delta=depth, record=record))
-    assert end.advice == f"{advice}; the results up to there hold."
 
 
 def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(grids):
