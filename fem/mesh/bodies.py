@@ -1,8 +1,9 @@
 """Axisymmetric meshes of the hemisphere and the half-space, made by gmsh.
 
 Both bodies are meshed by the same log-polar scheme about the first contact point: an inner block of
-three transfinite patches, then one transfinite sector a ring. The hemisphere ends in one block up
-to its flat top face, the half-space in rings that grow out to its far boundary.
+three transfinite patches, then rings of one element each, whose nodes divide their arcs as the
+block's do. The hemisphere ends in one block up to its flat top face, the half-space in rings that
+grow out to its far boundary.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -198,42 +200,59 @@ class _Layers:
     def half(self) -> int:
         return self.divisions // 2
 
-    @property
-    def middle(self) -> float:
-        """Fraction of the arc from the surface that the first half of the elements takes."""
-        if self.ratio == 1.0:
-            return 0.5
-        return float((self.ratio**self.half - 1.0) / (self.ratio**self.divisions - 1.0))
+    @cached_property
+    def fractions(self) -> Array:
+        """Of the arc, from the surface to each node."""
+        widths = self.ratio ** np.arange(self.divisions)
+        return np.append(0.0, np.cumsum(widths) / widths.sum())
 
 
 def _body(radii: Array, layers: _Layers, *, sphere: bool) -> tuple[Array, Integers]:
+    """Blocks by gmsh at the first contact point and above the sphere's last ring; rings between."""
     with _session() as gmsh:
         sketch = _Sketch(gmsh, sphere)
-        edge = _inner_block(sketch, radii[0], layers)
-        # each ring is a sector of its own: within a wider one transfinite interpolation would bend
-        # the inner rings, and meshes with different rings would not share the nodes of common ones
-        for r in radii[1:]:
-            edge = _sector(sketch, edge, r, layers)
+        _inner_block(sketch, radii[0], layers)
         if sphere:
-            _top_block(sketch, edge, radii[-1], layers)
+            _top_block(sketch, radii[-1], layers)
         sketch.geo.synchronize()
         gmsh.model.mesh.generate(2)
-        return _points_and_quads(gmsh)
+        points, quads = _points_and_quads(gmsh)
+    # a ring of elements has nodes on its two arcs alone: meshes share those of common rings
+    free = radii[1:-1] if sphere else radii[1:]
+    numbers = len(points) + np.arange(len(free) * (layers.divisions + 1))
+    rows = [_row(points, radii[0]), *numbers.reshape(len(free), -1)]
+    if sphere:
+        rows.append(_row(points, radii[-1]))
+    points = np.vstack([points, *(_arc(r, layers, sphere=sphere) for r in free)])
+    points[np.abs(points) < _ON_AXIS] = 0.0
+    inner, outer = np.array(rows[:-1]), np.array(rows[1:])
+    around = [inner[:, :-1], outer[:, :-1], outer[:, 1:], inner[:, 1:]]
+    quads = np.vstack([quads, np.stack(around, axis=-1).reshape(-1, 4)])
+    x = points[quads]
+    a, b = x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]
+    clockwise = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0.0
+    quads[clockwise] = quads[clockwise][:, ::-1]
+    return points, quads
 
 
-@dataclass(frozen=True)
-class _Edge:
-    """Outer boundary of what is meshed so far: its two ends and its curves from surface to axis."""
-
-    surface: int
-    axis: int
-    curves: list[int]
+def _row(points: Array, radius: float) -> Integers:
+    """Nodes of a block on an arc, from the surface to the axis."""
+    found = np.flatnonzero(np.abs(np.hypot(*points.T) / radius - 1.0) < 1e-9)
+    return np.asarray(found[np.argsort(np.abs(points[found, 1]))])
 
 
-def _inner_block(k: _Sketch, r0: float, layers: _Layers) -> _Edge:
+def _arc(radius: float, layers: _Layers, *, sphere: bool) -> Array:
+    """Nodes of a ring's arc from the surface to the axis, as gmsh's progression divides it."""
+    start = math.asin(radius / 2.0) if sphere else 0.0
+    angle = start + layers.fractions * (math.pi / 2.0 - start)
+    sign = 1.0 if sphere else -1.0
+    return np.asarray(radius * np.column_stack([np.cos(angle), sign * np.sin(angle)]))
+
+
+def _inner_block(k: _Sketch, r0: float, layers: _Layers) -> None:
     half, q = layers.half, layers.ratio
     start = math.asin(r0 / 2.0) if k.sphere else 0.0
-    middle = k.sign * (start + layers.middle * (math.pi / 2.0 - start))
+    middle = k.sign * (start + layers.fractions[half] * (math.pi / 2.0 - start))
     b, c = k.on_surface(0.5 * r0), k.on_axis(0.5 * r0)
     m = k.point(0.62 * r0 * math.cos(middle), 0.62 * r0 * math.sin(middle))
     b2, c2 = k.on_surface(r0), k.on_axis(r0)
@@ -246,33 +265,21 @@ def _inner_block(k: _Sketch, r0: float, layers: _Layers) -> _Edge:
     k.patch([bb, outer1, -mm, -bm], [b, b2, m2, m])
     outer2, cc = k.arc(m2, k.origin, c2, half, q), k.line(c, c2, RULES.inner_rings)
     k.patch([mm, outer2, -cc, -mc], [m, m2, c2, c])
-    return _Edge(b2, c2, [outer1, outer2])
 
 
-def _sector(k: _Sketch, edge: _Edge, r: float, layers: _Layers) -> _Edge:
-    b, c = k.on_surface(r), k.on_axis(r)
-    outer = k.arc(b, k.origin, c, layers.divisions, layers.ratio)
-    side, axis = k.surface(edge.surface, b, 1), k.line(edge.axis, c, 1)
-    k.patch(
-        [side, outer, -axis, *(-x for x in reversed(edge.curves))], [edge.surface, b, c, edge.axis]
-    )
-    return _Edge(b, c, [outer])
-
-
-def _top_block(k: _Sketch, edge: _Edge, radius: float, layers: _Layers) -> None:
+def _top_block(k: _Sketch, radius: float, layers: _Layers) -> None:
     length = 1.0 - radius
     # as many layers as keep the growth from a tenth of the radius below a quarter a layer
     width = 0.1 * radius
     n = max(4, math.ceil(math.log1p(0.25 * length / width) / math.log(1.25)))
     ratio = _growth(length / width, n)
+    b, c = k.on_surface(radius), k.on_axis(radius)
     corner, top = k.point(1.0, 1.0), k.point(0.0, 1.0)
-    side = k.surface(edge.surface, corner, n, ratio)
+    inner = k.arc(b, k.origin, c, layers.divisions, layers.ratio)
+    side = k.surface(b, corner, n, ratio)
     face = k.line(corner, top, layers.divisions, layers.ratio)
-    axis = k.line(edge.axis, top, n, ratio)
-    k.patch(
-        [side, face, -axis, *(-x for x in reversed(edge.curves))],
-        [edge.surface, corner, top, edge.axis],
-    )
+    axis = k.line(c, top, n, ratio)
+    k.patch([side, face, -axis, -inner], [b, corner, top, c])
 
 
 def _growth(total: float, n: int) -> float:
@@ -295,12 +302,6 @@ def _points_and_quads(gmsh: Any) -> tuple[Array, Integers]:
     place = np.full(int(tags.max()) + 1, -1)
     place[tags.astype(np.int64)] = np.arange(len(tags))
     points = xyz.reshape(-1, 3)[place[used], :2].copy()
-    points[np.abs(points) < _ON_AXIS] = 0.0
     number = np.full(int(tags.max()) + 1, -1)
     number[used] = np.arange(len(used))
-    quads = number[nodes[0].astype(np.int64)].reshape(-1, 4)
-    x = points[quads]
-    a, b = x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]
-    clockwise = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0.0
-    quads[clockwise] = quads[clockwise][:, ::-1]
-    return points, quads
+    return points, number[nodes[0].astype(np.int64)].reshape(-1, 4)
