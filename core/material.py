@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from .errors import InputError
 from .tables import html_table
@@ -79,11 +79,11 @@ class Material:
         """E / (1 - nu^2) [Pa]; infinite for a rigid body."""
         return math.inf if self.rigid else self.E / (1.0 - self.nu**2)
 
-    def with_(self, **changes: Any) -> Material:
+    def with_(self, **changes: Any) -> Self:
         """Return a copy with some fields replaced."""
         return replace(self, **changes)
 
-    def strengthened(self, factor: float) -> Material:
+    def strengthened(self, factor: float) -> Self:
         """Return the body with so many times its strength, its flow curve with it."""
         flow = self.flow
         if flow is not None and flow.curve is not None:
@@ -115,9 +115,9 @@ class Pair:
             raise InputError("both bodies are rigid", key="rigid", allowed="at most one rigid body")
 
     @property
-    def turned(self) -> Pair:
+    def turned(self) -> Self:
         """The same with sphere and flat in each other's place."""
-        return Pair(self.flat, self.sphere, self.R)
+        return replace(self, sphere=self.flat, flat=self.sphere)
 
     @property
     def E_reduced(self) -> float:

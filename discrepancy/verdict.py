@@ -37,6 +37,7 @@ from .rules import RULES
 
 # limit: next experiments that a verdict keeps [-]: a screen
 _PROPOSED = 5
+_SEED = "a whole number from 0 on"
 
 
 class _Asked(NamedTuple):
@@ -84,7 +85,9 @@ def diagnose(
     """
     if law not in (None, *get_args(LawChoice)):
         raise InputError(repr(law), key="law", allowed=", ".join(get_args(LawChoice)))
-    rng = np.random.default_rng(int(one_number(seed, key="seed", allowed="a whole number")))
+    if not (one_number(seed, key="seed", allowed=_SEED) >= 0 and seed == int(seed)):
+        raise InputError(repr(seed), key="seed", allowed=_SEED)
+    rng = np.random.default_rng(int(seed))
     own = own_mechanisms(mechanisms)
     progress("auditing the inputs")
     asked = _Asked(recordings, estimates.audit_rows(recordings), own, seed, rng, progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 from ..core.errors import InputError
@@ -21,6 +22,22 @@ except InputError as error:  # kept for whoever asks for a law: a new fit must s
     _OURS, _UNREADABLE = (), error
 LAWS = Shelf((law.name, law) for law in (*PUBLISHED, *_OURS))
 """Every law by name, in reading order: from the simplest assumption to the fullest."""
+
+
+Laws = str | ContactLaw | Sequence[str | ContactLaw]
+"""One or several, by name or as they are: one's own has no name here."""
+
+
+def laws_named(given: Laws) -> list[ContactLaw]:
+    """Return the laws that are asked for; refuse two that bear one name."""
+    found: dict[str, ContactLaw] = {}
+    for one in [given] if isinstance(given, str) or not isinstance(given, Iterable) else given:
+        if not isinstance(one, str | ContactLaw):
+            raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
+        law = law_named(one) if isinstance(one, str) else one
+        if found.setdefault(law.name, law) is not law:
+            raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
+    return list(found.values())
 
 
 def law_named(name: str) -> ContactLaw:

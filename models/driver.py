@@ -48,8 +48,11 @@ def map_residual(kernel, par, row, peak, sphere, flat):
 
 
 def depths_of(given: Depths) -> Array:
-    """Return approaches as numbers [m], of their own shape; refuse text such as "20 um"."""
-    return numbers(given, key="depth", allowed="depths in m")
+    """Return approaches as finite numbers [m], of their own shape; refuse text such as "20 um"."""
+    d = numbers(given, key="depth", allowed="depths in m")
+    if not np.all(np.isfinite(d)):
+        raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
+    return d
 
 
 class Rows(NamedTuple):
@@ -64,14 +67,17 @@ class Rows(NamedTuple):
 def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> Rows:
     """Take a call apart; `parameters` is the law's own method of that name."""
     d = depths_of(depth)
-    if not np.all(np.isfinite(d)):
-        raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
     if isinstance(pair, Pair):
         table = parameters(pair)[None, :]
         row = np.zeros(d.size, dtype=np.int64)
     else:
         table = np.stack([parameters(p) for p in pair])
-        if d.ndim == 0 or d.shape[0] != len(table):
-            d = np.broadcast_to(d, (len(table), *d.shape))
+        if d.ndim == 0:
+            d = np.broadcast_to(d, len(table))
+        elif d.shape[0] != len(table):
+            raise InputError(
+                f"{d.shape[0]} depths of {len(table)} pairs", key="depth",
+                allowed="one pair, or one for each entry of the first axis",
+            )  # fmt: skip
         row = np.repeat(np.arange(len(table)), d.size // len(table))
     return Rows(np.ascontiguousarray(table), row, np.ascontiguousarray(d.ravel()), d.shape)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -21,11 +20,8 @@ from ..core.rig import material_keys
 from ..dynamics.columns import Impacts
 from ..dynamics.files.blow import Blow, blow_of
 from ..dynamics.files.setup import DEFAULT_LAWS, FOLLOWING, Setup, setup_of
-from ..models import law_named
+from ..models import Laws, laws_named
 from ..models.base import ContactLaw
-
-Laws = str | ContactLaw | Sequence[str | ContactLaw]
-"""One or several, by name or as they are: one's own has no name here."""
 
 _KEYS = {"speed": "impact_speed_m_s", "mass": "mass_kg"}
 _ARRIVALS = ("impact_speed_m_s", "drop_height_m")
@@ -36,8 +32,9 @@ _NO_NUMBERS = ("striker", "support", "finite_tip")
 def impact(
     setup: Pair | str | Path = "ball", *, law: Laws = (),
     speed: float | None = None, mass: float | None = None, drop_height_m: float | None = None,
-    angle_deg: float | None = None, approach_tangential_m_s: float | None = None,
-    approach_spin_rad_s: float | None = None, striker: str | None = None,
+    angle_deg: float | None = None, friction: float | None = None,
+    approach_tangential_m_s: float | None = None, approach_spin_rad_s: float | None = None,
+    striker: str | None = None,
     modes: int | None = None, loss_factor: float | None = None,
     support: Literal["rigid", "sprung", "plate", "half-space", "rod"] | None = None,
     support_damping_N_s_m: float | None = None, support_radius_m: float | None = None,
@@ -61,6 +58,8 @@ def impact(
     drop_height_m, angle_deg
         Height of the fall, in place of a speed; between a rod's axis or a sphere's velocity and
         the flat, 90 is straight down.
+    friction
+        Coefficient of friction [-]; a pair has none without it.
     approach_tangential_m_s, approach_spin_rad_s
         Speed along the flat, and spin, before the touch.
     striker
@@ -156,22 +155,15 @@ def _stated(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _wanted(given: Laws, setup: Setup) -> list[ContactLaw]:
-    """The laws that were asked for, by name or as they are, each once; else the set-up's."""
-    found: dict[str, ContactLaw] = {}
-    for one in [given] if isinstance(given, str) or not isinstance(given, Iterable) else given:
-        if not isinstance(one, str | ContactLaw):
-            raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
-        law = law_named(one) if isinstance(one, str) else one
-        if found.setdefault(law.name, law) is not law:
-            raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
-    return list(found.values()) or [law_named(name) for name in setup.laws]
+    """The laws that were asked for, else the set-up's."""
+    return laws_named(given) or laws_named(setup.laws)
 
 
 def _chosen(
     setup: Pair | str | Path, stated: dict[str, Any], *, sweep: dict[str, Any] | None = None
 ) -> Setup:
     """The set-up with what is asked for in place of what it says."""
-    mass = stated.pop("mass_kg", None)
+    mass, friction = stated.pop("mass_kg", None), stated.pop("friction", None)
     if isinstance(setup, Pair):
         content = _content(setup, mass)
     elif isinstance(setup, str) and setup in KINDS:
@@ -183,6 +175,8 @@ def _chosen(
     if len(arrivals := stated.keys() & _ARRIVALS) == 1:
         section = {k: v for k, v in section.items() if k not in _ARRIVALS or k in arrivals}
     content = {**content, "impact": section} | ({"sweep": sweep} if sweep else {})
+    if friction is not None:
+        content["friction"] = {"coefficient": friction}
     if mass is not None and not isinstance(setup, Pair):
         strikers = content.get("strikers", {})
         name = section.get("striker") or next(iter(strikers), "")

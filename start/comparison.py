@@ -16,7 +16,7 @@ from ..core.inputs.input_file import path_of
 from ..core.material import Pair
 from ..core.output import figure
 from ..core.tables import frame, html_table, text_table
-from ..models import LAWS, law_named
+from ..models import LAWS, Laws, laws_named
 from ..models.base import ContactLaw, unwarned
 from ..models.choose import Demand, demand, follows_flow, past_curves, strains_under
 from .case_file import metal_keys, read_pair
@@ -167,7 +167,7 @@ class LawComparison:
 def compare_laws(
     pair: Pair | str | Path,
     *,
-    law: str | Sequence[str] = (),
+    law: Laws = (),
     max_delta_over_R: float | None = None,
 ) -> LawComparison:
     """Compare contact laws on a pair of one's own; `best`, `departures`, `plot()`, `frame()` tell.
@@ -177,7 +177,7 @@ def compare_laws(
     pair
         The two bodies, or a CASE.toml as `dentscope case --new` writes it.
     law
-        Name of a law, or several; by default all.
+        A law or several, by name or as they are; by default all.
     max_delta_over_R
         Largest approach over R; by default the file's, and 0.01 for a pair.
 
@@ -202,8 +202,7 @@ def compare_laws(
     last = last if max_delta_over_R is None else max_delta_over_R
     if not 1e-12 <= last <= 0.5:
         raise InputError(f"{last:g}", key="max_delta_over_R", allowed="1e-12 to 0.5")
-    names = [law] if isinstance(law, str) and law else list(law)
-    return compared(pair, [law_named(n) for n in names] or list(LAWS.values()), last=last)
+    return compared(pair, laws_named(law) or list(LAWS.values()), last=last)
 
 
 def compared(pair: Pair, laws: Sequence[ContactLaw], *, last: float) -> LawComparison:

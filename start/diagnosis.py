@@ -133,6 +133,6 @@ def diagnose(
     place = path_of(folder, key="folder", allowed="a recording set")
     verdict = verdict_of(
         read(set_folder(place)), seed=seed, confirm=confirm, law=law, cautious=cautious,
-        assume=assume, mechanisms=mechanisms,
+        assume=[assume] if isinstance(assume, str) else assume, mechanisms=mechanisms,
     )  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

@@ -202,6 +202,7 @@ def test_a_number_is_one_number_and_what_is_none_is_named(wrong):
     calls = {
         "speed": lambda: ds.impact("ball", speed=wrong),
         "mass": lambda: ds.impact("ball", mass=wrong),
+        "friction": lambda: ds.impact("ball", friction=wrong),
         "E_Pa": lambda: ds.Material(E=wrong, nu=0.3),
         "R": lambda: ds.Pair(steel, steel, R=wrong),
         "max_delta_over_R": lambda: ds.compare_laws("nowhere.toml", max_delta_over_R=wrong),
@@ -223,6 +224,37 @@ def test_a_number_is_one_number_and_what_is_none_is_named(wrong):
     assert one.contact_time_s == ds.impact("ball", law="hertz", speed=2)["hertz"].contact_time_s
     rows = pandas.Series([1e-6, 2e-6])
     assert len(ds.LAWS["fitted"].loading(ds.Pair(steel, steel, 0.01), rows)) == 2
+
+
+def test_what_python_takes_and_a_file_would_not_is_refused():
+    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8)
+    pair, fitted = ds.Pair(steel, steel, 0.01), ds.LAWS["fitted"]
+    calls = {
+        "rigid": lambda: ds.Material(2e11, 0.3, rigid="no"),
+        "seed": lambda: ds.diagnose("leeb-steel-800hv", seed=-1),
+        "seed: 1.9": lambda: ds.diagnose("leeb-steel-800hv", seed=1.9),
+        "law: 3": lambda: ds.compare_laws(pair, law=["hertz", 3]),
+        "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
+        "depth: 3 depths of 2 pairs": lambda: fitted.loading([pair, pair], [1e-6, 2e-6, 3e-6]),
+    }
+    for key, call in calls.items():
+        with pytest.raises(InputError, match=key):
+            call()
+    for method in (fitted.uncertainty, fitted.share, fitted.unloading_exponent):
+        with pytest.raises(InputError, match="depth: a depth is not a number"):
+            method(pair, math.nan)
+
+
+def test_a_blow_aslant_takes_its_friction():
+    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8, density=7800.0)
+    pair = ds.Pair(steel, steel, 0.01)
+    smooth, rough = (
+        ds.impact(pair, law="hertz", speed=1.0, angle_deg=45.0, friction=mu)["hertz"]
+        for mu in (None, 0.1)
+    )
+    # sliding throughout, the impulse along the flat is mu times that across it, m v (1 + e)
+    assert smooth.rebound_spin_rad_s == 0.0
+    assert rough.rebound_spin_rad_s == pytest.approx(0.1 * 2.0 / (0.4 * 0.01), rel=1e-3)
 
 
 def test_a_flow_curve_is_given_as_file_array_or_rows(tmp_path):
@@ -255,7 +287,7 @@ def test_signatures_say_what_is_taken_and_one_thing_is_returned():
         taken = set(inspect.signature(call).parameters) - {"setup", "law"}
         keys = {names.get(k, k) for k in table.model_fields} - {"laws"}
         assert keys - taken == set()
-        assert taken - keys == ({"mass"} if call is ds.impact else set())
+        assert taken - keys == ({"mass", "friction"} if call is ds.impact else set())
     assert "nu: 'float'" in pydoc.render_doc(ds.Material)
 
 
