@@ -80,16 +80,13 @@ def _header(path: Path) -> dict[str, str]:
     if found is None:
         raise InputError("no header beside it", source=str(path), allowed=".cihx or .cih")
     text = read_bytes(found, most=_HEADER_BYTES, allowed="a header").decode("latin-1")
-    said = _of_xml(text, found) if found.suffix == ".cihx" else _of_lines(text)
+    pairs = dict(line.split(" : ", 1) for line in text.splitlines() if " : " in line)
+    said = {name: pairs.get(label, "").strip() for name, (label, _) in _HEADERS.items()}
+    said = _of_xml(text, found) if found.suffix == ".cihx" else said
     for name, (label, _) in _HEADERS.items():
         if not said[name]:
             raise InputError("missing", source=str(found), key=label, allowed="its value")
     return said
-
-
-def _of_lines(text: str) -> dict[str, str]:
-    pairs = dict(line.split(" : ", 1) for line in text.splitlines() if " : " in line)
-    return {name: pairs.get(label, "").strip() for name, (label, _) in _HEADERS.items()}
 
 
 def _of_xml(text: str, source: Path) -> dict[str, str]:

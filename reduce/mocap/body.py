@@ -100,7 +100,7 @@ def make_body(
     if file is not None:
         given, way, remarks = _from_file(file, poses, markers)
     if axis is not None:
-        one, two = (markers.names.index(_known(n, markers)) for n in axis)
+        one, two = (markers.names.index(markers.only((n,)).names[0]) for n in axis)
         way = poses.shape[one] - poses.shape[two]
         way = way / np.linalg.norm(way)
     if shape != "rod":
@@ -129,10 +129,6 @@ def centre_of(poses: Poses, axis: Array, tip_radius: float, radius: float) -> Pr
     beside = poses.shape - np.outer(poses.shape @ axis, axis)
     spread = float(np.linalg.norm(beside, axis=1).max())
     return Prior(np.zeros(3), along, axis, max(radius, spread))
-
-
-def _known(name: str, markers: Markers) -> str:
-    return markers.only((name,)).names[0]
 
 
 def _from_file(path: Path, poses: Poses, markers: Markers) -> tuple[Prior, Array, tuple[str, ...]]:

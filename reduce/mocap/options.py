@@ -14,10 +14,6 @@ from ...core.inputs.toml_input import InputTable
 from ..bounces.options import GRAVITY
 
 
-def _three_numbers(text: str) -> bool:
-    return len(text.split(",")) == 3 and all(math.isfinite(number(v)) for v in text.split(","))
-
-
 def _markers(text: str) -> tuple[str, ...]:
     return tuple(n.strip() for n in text.split(":") if n.strip())
 
@@ -80,7 +76,7 @@ class MocapOptions(InputTable):
     @field_validator("spin_before_rad_s")
     @classmethod
     def _spin(cls, given: str) -> str:
-        if given and not _three_numbers(given):
+        if given and [math.isfinite(number(v)) for v in given.split(",")] != [True] * 3:
             raise ValueError("three numbers, as X,Y,Z")
         return given
 

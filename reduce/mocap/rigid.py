@@ -92,7 +92,7 @@ def rigid_poses(markers: Markers) -> Poses:
         body, found = shape[seen[k]], points[k, seen[k]]
         origin, turn = kabsch(body, found)
         if line and turns:
-            turn = _carried(turns[-1], turn, _direction(shape))
+            turn = _carried(turns[-1], turn, np.asarray(np.linalg.svd(shape)[2][0]))
         origins.append(origin)
         turns.append(turn)
         factors.append(_whiten(body @ turn.T))
@@ -187,10 +187,6 @@ def cross_matrices(vectors: Array) -> Array:
 def _is_line(shape: Array) -> bool:
     extents = np.linalg.svd(shape, compute_uv=False)
     return bool(extents[1] < RULES.collinear * extents[0])
-
-
-def _direction(shape: Array) -> Array:
-    return np.asarray(np.linalg.svd(shape)[2][0])
 
 
 def _carried(before: Array, turn: Array, axis: Array) -> Array:

@@ -142,17 +142,12 @@ def _press(
     if own.value and slope.value > 0.0 and 1.0 / slope.value > own.value:
         soft = Measured(1.0 / slope.value, slope.std / slope.value**2).minus(own)
         contact = Measured(1.0, 0.0).over(soft)
+    held = top.start + np.flatnonzero(load[top] >= cycle.peak - 4.0 * noise)
     return ReducedPress(
         cycle, Measured(cycle.peak, load_std), end.minus(zero),
         under.minus(zero).widened(machine), under.minus(end).widened(machine), contact,
-        _crept(load[top], depth[top], cycle.peak - 4.0 * noise),
+        float(depth[held[-1]] - depth[held[0]]) if held.size > 1 else 0.0,
     )  # fmt: skip
-
-
-def _crept(load: Array, depth: Array, held: float) -> float:
-    """Depth that came between the first and the last row that hold the load [m]."""
-    rows = np.flatnonzero(load >= held)
-    return float(depth[rows[-1]] - depth[rows[0]]) if rows.size > 1 else 0.0
 
 
 def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured | None:

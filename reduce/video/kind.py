@@ -7,11 +7,11 @@ from pathlib import Path
 from ...core.errors import InputError
 from ..images.clip import read_clip
 from ..images.picture_file import crop_window
-from ..measured import Measured, labelled
+from ..measured import labelled
 from ..reduced import Reduced
 from .options import VideoOptions
 from .picture import draw_video
-from .reduction import Optics, VideoReduction, reduce_video
+from .reduction import Optics, reduce_video
 
 
 def reduce(path: Path, options: VideoOptions) -> Reduced:
@@ -34,13 +34,10 @@ def reduce(path: Path, options: VideoOptions) -> Reduced:
         clip, optics, shape=options.shape, striker_is=options.striker_is,
         background=options.background,
     )  # fmt: skip
+    trials, values = found.trials(), {"half_width_pixel": found.half_width, "pixel_m": found.scale}
+    values |= labelled((t.label, t.observables) for t in trials)
     return Reduced(
-        source=path, values=_values(found), trials=found.trials(), notes=found.notes,
+        source=path, values=values, trials=trials, notes=found.notes,
         draw=lambda picture: draw_video(found, clip, picture),
         noise={"frame_rate_hz": found.optics.rate},
     )  # fmt: skip
-
-
-def _values(found: VideoReduction) -> dict[str, Measured]:
-    values = {"half_width_pixel": found.half_width, "pixel_m": found.scale}
-    return values | labelled((t.label, t.observables) for t in found.trials())
