@@ -21,8 +21,8 @@ from ..table.file import (
     Columns,
     columns_of,
     is_data,
+    numbered_lines,
     read_columns,
-    text_lines,
     text_rows,
 )  # fmt: skip
 from ..table.packed import TABLE_BYTES
@@ -105,7 +105,8 @@ def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     if path.suffix.lower() in (*BOOKS, *CHANNELS, ".zip"):
         yield read_columns(path, sheet=options.sheet)
         return
-    rows = text_rows(text_lines(path.read_bytes(), str(path)), str(path))
+    lines = numbered_lines(path.read_bytes(), str(path))
+    rows = text_rows([line for _number, line in lines], str(path))
     data = [is_data(row) for row in rows]
     begins = [0]
     for k in range(1, len(rows)):

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, pairwise
+from itertools import chain, pairwise, zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,7 @@ BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 """Endings of workbooks."""
 _MINUS = "\u2212"
 """As typesetters write it."""
+_POINT = re.compile(r"[+-]?\d*\.\d+")
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
 
@@ -153,10 +154,15 @@ def is_book(path: Path) -> bool:
 
 def text_columns(raw: bytes, source: str, sheet: str = "") -> Columns:
     """Read the numbers of a text table, of a LabVIEW file's segments that which is named."""
-    lines = text_lines(raw, source)
+    lines = [line for _number, line in numbered_lines(raw, source)]
     found = labview_rows(lines, sheet, source)
     if found is None:
-        return columns_of(text_rows(lines, source), source)
+        between = _separator(lines, source)
+        columns = columns_of(text_rows(lines, source, separator=between), source)
+        names = columns.heading.names
+        if between == "," and any(quantity_of(unit_in(name)) for name in names):
+            refuse_torn(columns.cells, names[: sum(map(bool, names))], source)
+        return columns
     body, heading = found
     columns = columns_of(text_rows(body, source, separator=heading.separator), source)
     names = (*heading.names, *[""] * len(columns.names))[: len(columns.names)]
@@ -226,13 +232,8 @@ def _has_hole(row: Sequence[str], held: Sequence[bool]) -> bool:
     return len(_filled(row)) > 1 and any(kept)
 
 
-def text_lines(raw: bytes, source: str) -> list[str]:
-    """Return the lines of a text file that hold something and are no comment; refuse none."""
-    return [line for _number, line in numbered_lines(raw, source)]
-
-
 def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
-    """Return the same with the number of each line in the file, from 1."""
+    """Return the lines that hold something and are no comment, by number from 1; refuse none."""
     each = enumerate(decoded(raw, source).splitlines(), start=1)
     lines = [(k, line) for k, line in each if line.strip() and not line.startswith("#")]
     if not lines:
@@ -241,7 +242,7 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
 
 
 def decoded(raw: bytes, source: str) -> str:
-    """Return the text of a file in any usual encoding; refuse what is none, or empty."""
+    """Return the text of a file in any usual encoding; refuse what is none."""
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in raw[:4096] and not wide:
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
@@ -249,8 +250,6 @@ def decoded(raw: bytes, source: str) -> str:
         text = raw.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
-    if not text.strip():
-        raise InputError("empty", source=source, allowed="columns of numbers")
     return text.replace(_MINUS, "-")
 
 
@@ -270,6 +269,22 @@ def cells_of(
     """Return the separator of a text table and its cells as written; refuse what is none."""
     separator = separator or _separator(lines, source)
     return separator, [[cell.strip() for cell in row] for row in _split(lines, source, separator)]
+
+
+def refuse_torn(rows: Iterable[Sequence[str]], headers: Sequence[str], source: str) -> None:
+    """Refuse rows that decimal commas tore: longer than headers, whole numbers under none of them.
+
+    A decimal point in the row says that its commas part cells.
+    """
+    for row in rows:
+        beyond = [c for name, c in zip_longest(headers, row, fillvalue="") if not name]
+        torn = len(row) > len(headers) and any(map(str.isdecimal, beyond))
+        if torn and not any(map(_POINT.fullmatch, row)):
+            raise InputError(
+                f"{','.join(row).strip(',')[:60]!r}: {len(row)} cells below {len(headers)} headers",
+                source=source, allowed="semicolons between cells, or points before decimals: these "
+                "commas do both",
+            )  # fmt: skip
 
 
 def _split(lines: Sequence[str], source: str, by: str, above: int = 0) -> Iterator[list[str]]:

@@ -11,14 +11,14 @@ from ....core.inputs.csv_table import rows_with, selection
 from ....core.inputs.input_file import checked_file
 from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
-from ..file import cells_of, decoded, is_book
+from ..file import cells_of, decoded, is_book, refuse_torn
 from ..packed import TABLE_BYTES
 from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of
 from .headers import Head, SheetColumn, columns_of, given_columns, head_of
-from .kinds import SUMMARY, without_unit
+from .kinds import SUMMARY, kind_of, without_unit
 from .rows import SeveralBallsError, Sheet, SheetRows, trials_of
-from .words import BODY, bare
+from .words import BODY, NOTE, bare
 
 _TYPED = str.maketrans({
     "\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u3000": " ", "℃": "°C",
@@ -54,6 +54,8 @@ def read_sheet(
         rows, head, others = _of_book(path, given, sheet)
     else:
         between, rows, head = _of_text(path.read_bytes(), source, given)
+    if not any(map(any, rows)):
+        raise InputError("empty", source=source, allowed="columns of numbers")
     for said in given:
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
@@ -155,5 +157,10 @@ def _of_text(
     ]  # fmt: skip
     # blanks part words too: where another separator shows numbers, it is that
     lines, between, _ = max(tried, key=lambda one: (one[1] != " " and one[2][1] > 1, one[2]))
-    rows = _typed(cells_of(lines, source, separator=between)[1])
-    return between, rows, head_of(rows, given)
+    cells = cells_of(lines, source, separator=between)[1]
+    head = head_of(rows := _typed(cells), given)
+    if between == "," and head.headers:
+        says = head.says[: max(map(len, cells[head.first : head.end]))]
+        named = [text * (kind_of(text) is not NOTE) for text in says]
+        refuse_torn(cells[head.end :], named, source)
+    return between, rows, head

@@ -219,5 +219,6 @@ KINDS = (
     )),
 )  # fmt: skip
 
+NOTE = KINDS[0]
 UNDERSTOOD = ", ".join(kind.said for kind in KINDS if kind.name not in ("person", "ball"))
 """Names that a header may have, for people."""
