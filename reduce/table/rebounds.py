@@ -17,6 +17,8 @@ from ..shared.units import LENGTH, quantity_of
 from .file import Columns
 from .options import TableOptions
 from .picture import draw_trials
+from .sheet.kinds import MEAN, SUMMARY, is_spread, kind_of
+from .sheet.words import APPROACHES, REBOUND_HEIGHT, bare
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
@@ -62,12 +64,24 @@ def _fall(ball: Ball, height: float) -> Fall:
 
 def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     """Return drop and rebound heights, (rows, 1 + repeats) [m], and their unit [m]."""
-    first = table.find(value, key="value") if value else _drops(table)
+    kinds = [getattr(kind_of(name), "name", "") for name in table.names]
+    if not value and APPROACHES[0] not in kinds:
+        raise InputError(
+            "no column is named as a drop height", source=table.source, key="value",
+            allowed="its name or number; the rebound heights follow it",
+        )  # fmt: skip
+    first = table.find(value, key="value") if value else kinds.index(APPROACHES[0])
     metres = table.factor(first, "length", given=unit, key="value_unit")
     said = [table.unit(k) if unit == "file" else "" for k in range(len(table.names))]
-    lengths = (k for k in range(first + 1, len(said)) if quantity_of(said[k]) in ("", "length"))
-    columns = [first, *lengths]
+    columns = [first] + [
+        k for k, name in enumerate(table.names[first + 1 :], start=first + 1)
+        if quantity_of(said[k]) in ("", "length") and kinds[k] in ("", REBOUND_HEIGHT)
+        and not (is_spread(name) or MEAN.search(bare(name)))
+    ]  # fmt: skip
+    titles = [k for k in range(first) if kinds[k] != "person"]  # whom Max may be
+    sums = [any(SUMMARY.fullmatch(bare(row[k])) for k in titles) for row in table.cells]
     heights = table.values[:, columns] * [LENGTH.get(said[k], metres) for k in columns]
+    heights[sums] = np.nan
     if heights.shape[1] < 2:
         raise InputError(
             "no column after the drop heights", source=table.source, key="value",
@@ -86,17 +100,3 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     if wrong:
         raise InputErrors(wrong)
     return heights, metres
-
-
-def _drops(table: Columns) -> int:
-    """The first column that is named as a drop height."""
-    from .sheet.kinds import kind_of
-
-    kinds = [kind_of(name) for name in table.names]
-    named = [k for k, kind in enumerate(kinds) if kind and kind.name == "drop_height_m"]
-    if not named:
-        raise InputError(
-            "no column is named as a drop height", source=table.source, key="value",
-            allowed="its name or number; the rebound heights follow it",
-        )  # fmt: skip
-    return named[0]

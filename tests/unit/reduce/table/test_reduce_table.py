@@ -165,10 +165,16 @@ def test_a_ringing_slower_than_the_pulse_stays_unknown(swings_in, part):
 
 
 def test_rebounds_find_their_drops_and_the_unit_of_each_column(tmp_path):
-    text = "Nr;Fallhöhe (m);h1 (cm);h2 (mm);e (%)\n1;1,00;64,0;640;80\n2;0,50;32,0;320;80\n"
+    text = (
+        "Nr;Fallhöhe (m);h1 (cm);h2 (mm);e (%);Eindruckdurchmesser (mm);SD (mm);Mittel (cm)\n"
+        "1;1,00;64,0;640;80;1,2;3,0;60\n2;0,50;32,0;320;80;1,1;2,0;30\nMittelwert;0,75;40;400;;1;2;\n"
+    )
     (tmp_path / "a.csv").write_text(text, "utf-8")
     found = load_kind("table").run(tmp_path / "a.csv", {"holds": "rebounds"}, source="test")
     assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8] * 4)
+    (tmp_path / "a.csv").write_text("Fallhöhe (m),h1 (cm)\n1,00,64,0\n", "utf-8")
+    with pytest.raises(InputError, match=r"'1,00,64,0': 4 cells below 2 headers"):
+        load_kind("table").run(tmp_path / "a.csv", {"holds": "rebounds"}, source="test")
     (tmp_path / "b.csv").write_text("cm,up,up\n100 ,64,63\n50,32,31\n")
     with pytest.raises(InputError, match="no column is named as a drop height"):
         load_kind("table").run(tmp_path / "b.csv", {"holds": "rebounds"}, source="test")
