@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -485,8 +486,14 @@ def files_of(found: RecordingSet) -> dict[str, bytes | str]:
     }  # fmt: skip
 
 
-def read_as(folder: Path, files: Mapping[str, bytes | str], *, unfinished: bool) -> None:
-    """Read a set as it would be with these files; a mistake names the folder they are meant for."""
+def read_as(
+    folder: Path, files: Mapping[str, bytes | str], *, unfinished: bool,
+    places: Mapping[str, str] = MappingProxyType({}),
+) -> None:  # fmt: skip
+    """Read a set as it would be with these files; a mistake names the folder they are meant for.
+
+    Of a trial it names the place, a file and its row, that the trial is from.
+    """
     with tempfile.TemporaryDirectory() as made:
         place = Path(made)
         for name, content in files.items():
@@ -496,5 +503,7 @@ def read_as(folder: Path, files: Mapping[str, bytes | str], *, unfinished: bool)
         try:
             read(place, unfinished=unfinished)
         except InputError as error:
-            lines = str(error).replace(str(place), str(folder)).splitlines()
-            raise InputErrors(tuple(map(InputError, lines))) from None
+            told = str(error).replace(str(place), str(folder))
+            for trial, place_of in places.items():
+                told = told.replace(f"{folder / 'trials.csv'}: trial {trial},", f"{place_of},")
+            raise InputErrors(tuple(map(InputError, told.splitlines()))) from None

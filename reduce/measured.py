@@ -113,7 +113,7 @@ class Trial:
       `NAME_std`.
     - `trace`, `profile`: columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
     - `label`: part of the trial's name that tells several trials of one file apart.
-    - `note`: what the person who measured wrote beside it.
+    - `note`: what the person who measured wrote beside it; `place`: where it stands in the file.
     """
 
     observables: Mapping[str, Measured]
@@ -121,6 +121,7 @@ class Trial:
     profile: Mapping[str, Array] = field(default_factory=dict)
     label: str = ""
     note: str = ""
+    place: str = ""
 
     def __post_init__(self) -> None:
         for name in ("observables", "trace", "profile"):

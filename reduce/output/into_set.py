@@ -337,7 +337,8 @@ def _write_whole(
             if columns:
                 files[f"{kind}/{name}.csv"] = _curve_text(columns)
     if len(after.trials):
-        read_as(folder, files, unfinished=True)
+        places = {name: trial.place for name, trial in curves.items() if trial.place}
+        read_as(folder, files, unfinished=True, places=places)
     else:
         del files["trials.csv"]
     write_files(folder, files)

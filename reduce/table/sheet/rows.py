@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 
 from ....core.errors import InputError, InputErrors
-from ....recordings.columns import MEASURED
+from ....recordings.columns import CONDITIONS, MEASURED
 from ....recordings.rules import RULES as OWN
 from ....recordings.template import Shape
 from ...bounces.options import GRAVITY
@@ -148,7 +148,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Sheet:
     named = [
         replace(
             trial, label=rows[k - 1][naming.place] if naming else f"{k:03d}",
-            note=note_of(rows[k - 1], columns, naming),
+            note=note_of(rows[k - 1], columns, naming), place=f"{sheet.source}: row {k}",
             observables={
                 n: (Measured(v.value, stds[n] * v.value / len(seen[n]) ** 0.5) if n in stds else v)
                 .rounded() for n, v in trial.observables.items()
@@ -389,6 +389,10 @@ def _read(
         value = number_in(cell, column, sheet.decimals)
         why = why_not(cell, column, value, sheet.decimals)
         if value is None or why:
+            if name in APPROACHES and value and value.value > CONDITIONS[name].high:
+                most = f"up to {CONDITIONS[name].high:g} in the SI; is it in {column.unit}?"
+                where = f"row {k}, {column.header}"
+                raise InputError(why, source=sheet.source, key=where, allowed=most)
             left.append(f"row {k}, {column.header}: {why}")
             unread |= {name} & {*APPROACHES, "angle_deg"}
             continue
