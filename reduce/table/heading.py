@@ -27,7 +27,7 @@ WORDS = {
     "mm/mm": "-", "m/m": "-", "in/in": "-", "kilonewtons": "kN", "millimeters": "mm",
     "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg", "grad": "deg",
     "msec": "ms", "usec": "us", "µsec": "us", "microseconds": "us", "minutes": "min",
-    "nsec": "ns", "lb": "lbf", "lbs": "lbf", "g's": "g", "gn": "g", "g_n": "g",
+    "nsec": "ns", "lb": "lbf", "lbs": "lbf", "kp": "kgf", "g's": "g", "gn": "g", "g_n": "g",
     "m/s/s": "m/s2", "m/s**2": "m/s2", "m/sec2": "m/s2", "m/sec^2": "m/s2", "ms-2": "m/s2",
     "m s-2": "m/s2", "m s^-2": "m/s2", "m*s^-2": "m/s2", "m·s⁻²": "m/s2", "m s⁻²": "m/s2",
     "n/mm²": "N/mm2", "n/mm^2": "N/mm2", "lbs.": "lbf", "in.": "in", "s⁻¹": "1/s",

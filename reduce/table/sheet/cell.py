@@ -34,7 +34,7 @@ _ICE = 273.15
 def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: str) -> str:
     """Return why a cell is not taken; empty where it is."""
     if value is None:
-        if not decimals and _grouped(cell):
+        if not (column.decimals or decimals) and _grouped(cell):
             number = _number_of(cell)
             other = "" if _MILLIONS.fullmatch(number) else f", or {number}0"
             whole = re.sub("[.,]", "", number)
@@ -54,13 +54,21 @@ def decimals_of(
 ) -> str:
     """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it.
 
+    Of both each column keeps what its own numbers show, as 0,670 and 0.797 do, but not 1,234.5.
     Where all may be of thousands, a comma is that sign `between` whose cells are semicolons, and
     in a column that has no other numbers each sign is, beside one such as 3000 without.
     """
-    places = [c.place for c in columns if c.kind.quantity != "text"]
-    each = [[n for row in rows if (n := _number_of(row[place]))] for place in places]
+    measured = [c for c in columns if c.kind.quantity != "text"]
+    each = [[n for row in rows if (n := _number_of(row[c.place]))] for c in measured]
     every = [n for numbers in each for n in numbers]
-    signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, every) if m}
+    shown = [
+        {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, numbers) if m}
+        for numbers in each
+    ]
+    signs = set[str]().union(*shown)
+    for column, own, numbers in zip(measured, shown, each, strict=True):
+        parted = len(own) > 1 and any({".", ","} <= {*n} for n in numbers)
+        column.decimals = "".join(own) * (len(signs) > 1 and not parted)
     if not signs and not any(_MILLIONS.fullmatch(n) for n in every):
         alike = any(_LONG.fullmatch(n) for n in every)
         for numbers in each:
@@ -90,9 +98,9 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
         return None
     text = found["number"].strip()
     if _grouped(cell):
-        if not decimals:
+        if not (signs := column.decimals or decimals):
             return None
-        if decimals not in text:
+        if not {*signs} & {*text}:
             text = re.sub("[.,]", "", text)
     number, std = value_of(plain(text, ";")), value_of(plain(found["std"] or "0", ";"))
     own = in_short(found["unit"].strip()) if found["unit"] else ""

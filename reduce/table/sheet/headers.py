@@ -17,7 +17,7 @@ from .words import APPROACHES, FROM_NORMAL, UNDERSTOOD, SheetKind, bare
 
 NOT_UNDERSTOOD = "left out: not understood"
 ABOVE = "row {}, left out: above the headers"
-_NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
+_NUMBER = re.compile(r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
 _STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*\(([^)]*)\)")
 _ORDINAL = re.compile(r"\d\.?(st|nd|rd|th|e|er|re|ere|eme|o|a|回目?|次)\.?")
 """Such as 2nd, 2ème, 2º, as `bare` has them."""
@@ -36,7 +36,8 @@ class SheetColumn:
     """A column that is understood: its place from 0, its header as the sheet has it, what it is.
 
     `unit` is None where the header names none, `spread` whether it holds the standard deviations of
-    another column, `taken` how many cells were read, `unitless` whether one asked for the unit.
+    another column, `taken` how many cells were read, `unitless` whether one asked for the unit,
+    `decimals` signs before its decimals where the sheet has two.
     """
 
     place: int
@@ -46,6 +47,7 @@ class SheetColumn:
     spread: bool = False
     taken: int = 0
     unitless: bool = False
+    decimals: str = ""
 
     @property
     def no_unit(self) -> str:
@@ -119,7 +121,8 @@ def _headers(block: Sequence[Sequence[str]]) -> list[str]:
     units = [row for row in block if _is_units(row)]
     names = [row for row in block if row not in units]
     *above, lowest = names or [[]]
-    sound = all(map(_is_title, above)) and (_is_title(lowest) or _counts(lowest, above[-1:]))
+    titles = all(_is_title(row, 0) for row in above)
+    sound = titles and (_is_title(lowest) or _counts(lowest, above[-1:]))
     if not sound or len(units) > 1:
         return []
     below = [*names[1:], *units]
@@ -156,8 +159,11 @@ def _is_units(row: Sequence[str]) -> bool:
     )
 
 
-def _is_title(row: Sequence[str]) -> bool:
-    """Whether a row holds names or titles: no numbers, no remark, no line of its own."""
+def _is_title(row: Sequence[str], most: float = 0.5) -> bool:
+    """Whether a row holds names or titles: few numbers, no remark, no line of its own.
+
+    Above other names no number: Kugeldurchmesser [mm];8,0 speaks of all rows.
+    """
     filled = [cell for cell in row if cell]
     if not filled or (len(set(filled)) < 2 and row[0]):
         return False
@@ -166,7 +172,7 @@ def _is_title(row: Sequence[str]) -> bool:
     )
     lines = sum(_SAID_OF.search(cell) is not None for cell in filled)
     comment = row[0].startswith("#") and row[0].strip("# ")
-    return not comment and 2 * lines < len(filled) and 2 * numbers <= len(filled)
+    return not comment and 2 * lines < len(filled) and numbers <= most * len(filled)
 
 
 def _counts(row: Sequence[str], above: Sequence[Sequence[str]]) -> bool:

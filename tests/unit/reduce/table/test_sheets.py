@@ -89,6 +89,10 @@ def test_the_command_makes_a_set(tmp_path, capsys):
     assert "no header 'datun' (allowed: Nr., Datum, " in capsys.readouterr().err
     assert run([*command, "--column", "Datum=day"]) == 2
     assert "allowed: HEADER=quantity unit" in capsys.readouterr().err
+    path.write_bytes(GERMAN.replace(";113;", ";311;").encode("cp1252"))
+    assert run(command) == 2
+    assert capsys.readouterr().err.startswith(f"{path}: row 3, column restitution: 1.2")
+    path.write_bytes(GERMAN.encode("cp1252"))
     assert run(command) == 0
     told = capsys.readouterr().out
     assert "'Fallhöhe (cm)': drop_height_m (4 cells)" in told
@@ -110,6 +114,8 @@ def test_the_command_makes_a_set(tmp_path, capsys):
         ("Höhe in mm;Dellentiefe in µm\n500;55,1\n2.000;121,0\n", [0.5, 2.0]),
         ("Fallhöhe (m);Dellentiefe (µm)\n1,250;55\n2,500;80\n", [1.25, 2.5]),
         ("drop height (m);dent depth (um)\n1.250;55\n2.500;1080\n", [1.25, 2.5]),
+        ("drop height (mm);e\n1,087;0,5\n0.797;0,4\n0,67;0,4\n", [0.001087, 0.000797, 0.00067]),
+        ("Höhe (mm);Dellentiefe (µm)\n1.500;0.797\n200,0;0,67\n", [1.5, 0.2]),
         ("drop height (in),dent depth (um)\n1.969,55\n3.937,80\n", [0.0500126, 0.0999998]),
     ],
 )
@@ -372,6 +378,10 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("drop height (cm),Stoßzahl (%)\n10,0.65\n", "'0.65': a part of 1, or of 100?"),
         ("drop height (cm),dent depth (um)\n10,-9\n", "'-9' is too little"),
         ("drop height (cm),e\n10,65\n", "'65' is too much"),
+        ("drop height (m);e\n1,0;0,6\n400,0;0,6\n",
+         r"row 3, drop height \(m\): '400,0' is too much .* is it in m\?"),
+        ("#,drop height (mm),rebound height (mm)\n1,100,0,44,1\n", "5 cells below 3 headers"),
+        ("#,drop height (mm),e,note\n1,100,0,6,\n", "5 cells below 4 headers"),
         ("Drop (cm),Rebound (cm),note\n10,44,\n20,80,a\n30,108,b\n",
          r"'Drop \(cm\)' and 'Rebound \(cm\)': restitution 2, the median of 3 rows"),
     ],
@@ -407,6 +417,8 @@ def test_presses_are_rows_too(tmp_path):
     seen = [t.observables for t in read_text(tmp_path, text).trials]
     assert [s["load_N"].value for s in seen[:2]] == [1e3, 2e3]
     assert "load_N" not in seen[2]
+    kiloponds = read_text(tmp_path, text.replace("(kN)", "(kp)"))
+    assert value(kiloponds, 1, "load_N") == pytest.approx(2 * 9.80665)
     assert seen[2]["drop_height_m"].value == pytest.approx(0.1)
 
 
@@ -441,6 +453,12 @@ def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tm
     assert [line.split(":")[0] for line in found.left_out] == ["sheet 'Sheet'", "sheet 'Steel'"]
     assert "--sheet 'Steel' takes it" in found.left_out[1]
     assert "--sheet 'Brass' takes it" in read_sheet(tmp_path / "a.xlsx", sheet="Steel").left_out[1]
+
+
+def test_an_empty_workbook_is_called_so(tmp_path):
+    pytest.importorskip("openpyxl").Workbook().save(tmp_path / "a.xlsx")
+    with pytest.raises(InputError, match=r"a\.xlsx: empty"):
+        read_sheet(tmp_path / "a.xlsx")
 
 
 def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
@@ -505,7 +523,10 @@ def test_of_two_columns_that_one_names_the_trials_whose_entries_differ(tmp_path)
     assert [(t.label, t.note) for t in sheet.trials] == [("7", "Probe P"), ("8", "Probe P")]
 
 
-@pytest.mark.parametrize("above", ["# ball drops, lab 3, plate S235", "Fallversuche", "Lab: 3,by:"])
+@pytest.mark.parametrize(
+    "above",
+    ["# ball drops, lab 3, plate S235", "Fallversuche", "Lab: 3,by:", "Ball diameter (mm),ca. 8"],
+)
 def test_what_stands_above_the_headers_is_no_title_of_theirs(tmp_path, above):
     sheet = read_text(tmp_path, f"{above}\nDrop no.,drop height (cm),e (n=3)\n1,10,0.6\n")
     *headers, told = sheet.columns
@@ -539,10 +560,13 @@ def test_a_ball_that_is_the_same_in_all_rows_is_that_of_the_set(tmp_path, head, 
     ["Kugel Ø 10,5 mm;Messing\nKugelmasse [g]:;4,08;", "球径：10.5mm  球重：4.08g",
      "Ball: AISI 52100, 10.5 mm dia., 4.08 g",
      "Plate 20 mm, from 0.5 m; 10.5 mm steel ball (4.08 g)\nBall radius 5 mm, plate 3 kg",
-     "Kulka: średnica 10,5 mm, masa 4,08 g"],
+     "Kulka: średnica 10,5 mm, masa 4,08 g", "Kugelmasse;4,08;g\nKugeldurchmesser [mm];10,5"],
 )  # fmt: skip
-def test_a_ball_above_the_headers_is_that_of_the_set(tmp_path, above):
-    sheet = read_text(tmp_path, f"{above}\n\nFallhöhe (cm);e\n10;0,6\n20;0,5\n")
+@pytest.mark.parametrize("between", ["\n", ""])
+def test_a_ball_above_the_headers_is_that_of_the_set(tmp_path, above, between):
+    table = "Nr.;Fallhöhe (cm);e\n1;10;0,6\n2;20;0,5\n"
+    sheet = read_text(tmp_path, f"{above}\n{between}{table}")
+    assert [trial.label for trial in sheet.trials] == ["1", "2"]
     assert {k: v.value for k, v in sheet.striker.items()} == pytest.approx(
         {"tip_radius_m": 5.25e-3, "mass_kg": 4.08e-3}
     )
