@@ -27,7 +27,7 @@ def show_materials(
         ),
     ] = "",
 ) -> None:
-    """List metals and hard materials, or show one with spread, sources and a table for a file."""
+    """List metals and hard materials, or show one with spread, sources and its line of a file."""
     found = [one for one in materials().values() if one.has(name)]
     if name in materials() or len(found) == 1:
         _show(materials().get(name) or found[0])
@@ -44,7 +44,7 @@ def show_materials(
             if key in one.numbers and key in _LISTED
         )
         told(one.name, f"{one.title}: {listed}.")
-    typer.echo("\nIn a file: material = NAME; what the file states goes first.")
+    _in_a_file("NAME")
 
 
 def _show(one: Entry) -> None:
@@ -63,3 +63,8 @@ def _show(one: Entry) -> None:
     for short, whole in sources().items():
         if short in named:
             told(short, f"{whole}.")
+    _in_a_file(f'"{one.name}"')
+
+
+def _in_a_file(name: str) -> None:
+    typer.echo(f"\nIn a file: material = {name}; what the file states goes first.")

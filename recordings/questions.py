@@ -7,12 +7,25 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..core.inputs.materials import unlisted
 from .recording_set import RecordingSet
 
 
 def questions_of(found: RecordingSet) -> list[str]:
-    """Return a line for each number that is perhaps in another unit, stated twice or not used."""
-    return [*_unused_gauges(found), *_gravity(found), *_deep(found), *_twice(found)]
+    """Return a line for each number that is perhaps in another unit, missing, twice or unused."""
+    setup = [*_unlisted(found), *_unused_gauges(found), *_gravity(found)]
+    return [*setup, *_deep(found), *_twice(found)]
+
+
+def _unlisted(found: RecordingSet) -> Iterator[str]:
+    """Metals whose name gives none of the numbers that are left out."""
+    for key, body in found.setup.bodies.items():
+        named = {"E_Pa": body.E_Pa, "nu": body.nu}
+        if key == "target" and found.setup.target.yields:
+            named["Sy_Pa"] = body.strength
+        left_out = [name for name, x in named.items() if x is None]
+        if left_out and not body.rigid and (told := unlisted(body.material)):
+            yield f"{key}: {told}assumed: {', '.join(left_out)}"
 
 
 def _unused_gauges(found: RecordingSet) -> Iterator[str]:

@@ -200,6 +200,6 @@ def material(name: str) -> Material:
     >>> material("aluminium-6061-t6").Sy
     276000000.0
     """
-    entry_named(name)
+    name = entry_named(name).name
     of = quantities(MaterialTable(material=name))
     return Material(of["E_Pa"], of["nu"], of.get("Sy_Pa", math.inf), of["density_kg_m3"], name=name)

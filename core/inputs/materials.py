@@ -1,13 +1,14 @@
 """Metals and hard materials by name: their numbers, with spread and source.
 
 The numbers stand in `data/materials/materials.csv`, what was measured of hardening, rate and heat
-beside it. A body of any input file that names one of them with `material = "aluminium-6061-t6"`
-takes from it what the file leaves out; a stated value goes first.
+beside it. A body of any input file that names one of them with `material = "aluminium-6061-t6"`, or
+by a designation of it alone, takes from it what the file leaves out; a stated value goes first.
 """
 
 from __future__ import annotations
 
 import csv
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -48,6 +49,11 @@ class Entry:
         text = " ".join((self.name, self.title, self.kind, self.also, self.note)).lower()
         return all(word in text for word in words.lower().split())
 
+    @property
+    def words(self) -> frozenset[str]:
+        """Whole words of its name and designations."""
+        return _words(f"{self.name} {self.title} {self.also}")
+
     def quantity(self, key: str) -> dict[str, float] | None:
         """Return value and standard deviation as a file writes them; none where unknown."""
         found = self.numbers.get(key)
@@ -83,13 +89,25 @@ def _entry(row: Mapping[str, str], laws: Mapping[str, Mapping[str, Any]]) -> Ent
 
 
 def entry_named(name: str) -> Entry:
-    """Return an entry, or refuse a name and tell the nearest."""
-    known = materials()
+    """Return an entry by its name or a designation, or refuse a name and tell the nearest."""
     if not isinstance(name, str):
         raise InputError(repr(name), key="material", allowed="a name of dentscope materials")
-    if name in known:
-        return known[name]
+    if len(found := _meant(name)) == 1:
+        return found[0]
     raise InputError(f"no material {name!r}", key="material", allowed=_instead_of(name, 0.5))
+
+
+@cache
+def _meant(name: str) -> tuple[Entry, ...]:
+    """Entries of a name, or of a designation, which has a digit: words alone are a description."""
+    if name in materials():
+        return (materials()[name],)
+    words = _words(name) if re.search(r"\d", name) else frozenset()
+    return tuple(one for one in materials().values() if words and words <= one.words)
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(re.findall(r"[\w.]+", text.lower()))
 
 
 def _near(name: str, likeness: float) -> list[str]:
@@ -97,18 +115,22 @@ def _near(name: str, likeness: float) -> list[str]:
 
 
 def _instead_of(name: str, likeness: float) -> str:
-    near = [one.name for one in materials().values() if name and one.has(name)]
-    near = near[:3] or _near(name, likeness)
+    near = _alike(name, likeness)
     if near:
         return f"{', '.join(near)}; all of them: dentscope materials"
     return "a name that dentscope materials lists"
+
+
+def _alike(name: str, likeness: float) -> list[str]:
+    near = [one.name for one in materials().values() if name and one.has(name)]
+    return near if 0 < len(near) <= 3 else _near(name, likeness)
 
 
 def unlisted(name: str) -> str:
     """Say that a name stands for no material of the table; empty where none is given or it does."""
     if not name or name in materials():
         return ""
-    near = _near(name, 0.5)
+    near = _alike(name, 0.6)
     meant = f"did you mean {' or '.join(near)}? " if near else ""
     return f"no material of the table is called {name!r}; {meant}"
 
@@ -133,10 +155,11 @@ def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
     name = given.get("material")
     if given.get("rigid") or not isinstance(name, str):
         return given
-    if name not in materials():
+    if len(meant := _meant(name)) != 1:
         elastic = given.get("E_Pa") is not None and given.get("nu") is not None
-        return given if elastic or not _near(name, 0.75) else {**given, "material": Mistyped(name)}
-    entry = materials()[name]
+        stays = elastic or not (meant or _near(name, 0.75))
+        return given if stays else {**given, "material": Mistyped(name)}
+    (entry,) = meant
     strengths = {"Sy_Pa", "hardness_Pa", "flow_curve", "hardening"}
     stated = any(given.get(key) for key in strengths)
     # the strength where it is listed, as it was measured, before what follows from a hardness
@@ -146,4 +169,4 @@ def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
         for key in entry.numbers
         if key in known and key not in hidden and given.get(key) is None
     }
-    return {**given, **taken}
+    return {**given, **taken, "material": entry.name}

@@ -161,6 +161,7 @@ def test_the_commands(capsys):
     told = capsys.readouterr().out
     assert "350 +- 28 MPa: johnson-cook-1983." in told
     assert "Proc. 7th Int. Symp. Ballistics" in told
+    assert 'In a file: material = "steel-1006"; ' in told
     assert run("materials", "steel-1106-hot-rolled") == 2
     assert "steel-1010-hot-rolled" in capsys.readouterr().err
 
@@ -200,6 +201,24 @@ def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_pat
     assert len(lines) == 2
     assert "target.material: 'steel-1016-hot-rolled' (allowed: steel-1" in lines[0]
     assert "strikers.ball.material: 'tungsten-carbide' (allowed: tungsten-carbide-6co" in lines[1]
+
+
+@pytest.mark.parametrize("words", ["100Cr6", "1.3505", "52100", "AISI 52100", "suj2"])
+def test_a_designation_of_one_entry_gives_what_its_name_does(words):
+    known = frozenset(BodyTable.model_fields)
+    assert filled({"material": words}, known) == filled({"material": "steel-52100-hardened"}, known)
+    assert filled({"material": words, "nu": 0.28}, known)["nu"] == 0.28
+    assert ds.material(words) == ds.material("steel-52100-hardened")
+
+
+@pytest.mark.parametrize("words", ["float glass", "hard steel", "steel, 300 HV", "AISI 201"])
+def test_a_description_stays_what_it_is(words):
+    assert filled({"material": words}, frozenset(BodyTable.model_fields)) == {"material": words}
+
+
+def test_a_designation_of_two_entries_is_told_with_both():
+    with pytest.raises(InputError, match=r"'1\.4301' .*steel-304-annealed, steel-304-balls"):
+        parse_model({"material": "1.4301"}, BodyTable, source="a file")
 
 
 def test_a_close_name_beside_its_own_numbers_stays():

@@ -482,7 +482,7 @@ def test_waves_in_a_stated_thickness_are_those_of_a_plate():
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ({"material": "aluminium-6061-T6"}, "did you mean aluminium-6061-t6"),
+        ({"material": "aluminium-6061-t66"}, "did you mean aluminium-6061-t6"),
         ({"material": "aluminum"}, "no material of the table is called 'aluminum'; did you mean"),
         ({"material": "the old bench"}, "is called 'the old bench'; without Sy_Pa it stays"),
         ({}, "target: without Sy_Pa it stays elastic"),

@@ -9,8 +9,7 @@ format = "recording-set/1"
 name = "a"
 gravity_m_s2 = {gravity}
 [target]
-E_Pa = 2e11
-nu = 0.3
+{target}
 [strikers.ball]
 shape = "sphere"
 tip_radius_m = 0.005
@@ -26,8 +25,11 @@ HEAD = "trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m\n
 
 @pytest.fixture
 def asked(tmp_path):
-    def make(*rows, gravity="9.81", gauge="permanent_depth_m"):
-        (tmp_path / "set.toml").write_text(SET.format(gravity=gravity, gauge=gauge))
+    def make(*rows, **stated):
+        usual = {
+            "gravity": "9.81", "gauge": "permanent_depth_m", "target": "E_Pa = 2e11\nnu = 0.3"
+        }  # fmt: skip
+        (tmp_path / "set.toml").write_text(SET.format(**(usual | stated)))
         (tmp_path / "trials.csv").write_text(HEAD + "".join(f"{row}\n" for row in rows))
         return questions_of(read(tmp_path))
 
@@ -50,6 +52,11 @@ def test_rows_that_say_the_same_are_asked_about(asked):
     [
         ("a,ball,90,1,0.55,1e-5", {"gravity": "981"}, "gravity_m_s2 981: is it in cm/s"),
         ("a,ball,90,1,0.55,1e-5", {"gauge": "peak_force_N"}, "gauge.peak_force_N is not used"),
+        (
+            "a,ball,90,1,0.55,1e-5",
+            {"target": 'material = "hard steel"\nE_Pa = 2e11\nnu = 0.3'},
+            "target: no material of the table is called 'hard steel'; assumed: Sy_Pa",
+        ),
         ("a,ball,90,1,0.55,1e-2", {}, "permanent_depth_m 0.01 of a is above the tip's radius"),
     ],
 )
