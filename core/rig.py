@@ -24,7 +24,7 @@ from pydantic import (
 )
 
 from .errors import InputError
-from .inputs.materials import Mistyped, filled
+from .inputs.materials import Mistyped, filled, unlisted
 from .inputs.names import FileName
 from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
 from .inputs.toml_input import InputTable
@@ -295,6 +295,19 @@ class BodyTable(MaterialTable):
             return self.Sy_Pa
         return by_tabor(self.hardness_Pa)
 
+    @property
+    def tabor(self) -> tuple[float, float, str] | None:
+        """Hardness over strength, its standard deviations off Tabor's and both in words.
+
+        None unless both are stated.
+        """
+        if self.hardness_Pa is None or self.Sy_Pa is None:
+            return None
+        ratio = self.hardness_Pa.value / self.Sy_Pa.value
+        std = math.hypot(by_tabor(self.hardness_Pa).relative, self.Sy_Pa.relative)
+        told = f"hardness over strength {ratio:.3g} as stated; {TABOR:g} for most metals"
+        return ratio, abs(math.log(ratio / TABOR)) / std, told
+
 
 class TargetTable(BodyTable):
     """`[target]`: the flat or second sphere, its support and the baseline that its law asks for."""
@@ -389,9 +402,11 @@ class StrikerTable(BodyTable):
 
     @field_validator("mass_kg", mode="before")
     @classmethod
-    def _solid(cls, given: Any) -> Any:
+    def _solid(cls, given: Any, info: ValidationInfo) -> Any:
         if given is None:
-            raise ValueError("a mass, or density_kg_m3 of a solid sphere")
+            told = unlisted(info.data.get("material", "")).rstrip("; ")
+            also = f"; {told}" if told else ""
+            raise ValueError(f"a mass, or density_kg_m3 of a solid sphere{also}")
         return given
 
     @field_validator("shape", mode="before")

@@ -17,7 +17,7 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...core.inputs.materials import materials, unlisted
-from ...core.rig import TABOR, Quantity
+from ...core.rig import Quantity
 from ...models.base import ContactLaw, DomainWarning, unwarned
 from ...models.choose import demand, follows_flow
 from ...models.turned import as_made
@@ -331,9 +331,8 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
     for key, body in file.bodies.items():
         if body.material in materials() and (note := materials()[body.material].note):
             yield f"{body.material}: {note}"
-        if body.hardness_Pa is not None and body.Sy_Pa is not None:
-            ratio = body.hardness_Pa.value / body.Sy_Pa.value
-            yield f"{key}: hardness over strength {ratio:.3g} as stated; {TABOR:g} for most metals"
+        if body.tabor is not None:
+            yield f"{key}: {body.tabor[2]}"
         flows = body.flow_curve or getattr(body, "hardening", None)
         if flows and not follows_flow(law):
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"

@@ -6,11 +6,24 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache
 
+from ...core.rig import TABOR
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity
 from .trial_view import TrialReading, TrialView, by_trial, value_of
+
+
+def check_strength(found: RecordingSet) -> Iterator[Finding]:
+    """Hardness against strength of what is struck, where both are stated and no flow curve is."""
+    target = found.setup.target
+    if target.tabor is None or target.flow_curve or not target.yields:
+        return
+    ratio, z, text = target.tabor
+    severity = Severity.CAUTION if z > 2.0 else Severity.CONSISTENT
+    if severity is Severity.CAUTION:
+        text += ": one of both is wrong, or the metal hardens; Sy_Pa alone is used"
+    yield Finding("hardness of the target against its strength", severity, text, ratio, TABOR, z)
 
 
 @by_trial

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..recording_set import RecordingSet
-from .contact import check_contact_size, check_duration, check_energy, check_force
+from .contact import check_contact_size, check_duration, check_energy, check_force, check_strength
 from .findings import Finding, Severity
 from .momentum import check_momentum
 from .motion import check_friction, check_impulse, check_mass, check_speed
@@ -57,7 +57,7 @@ def audit(found: RecordingSet) -> Audit:
 
     Of checks made trial by trial the worst, with the number of trials that share its severity.
     """
-    findings = check_mass(found)
+    findings = [*check_mass(found), *check_strength(found)]
     for rows, checks in ((found.impacts, CHECKS), (found.presses, PRESS_CHECKS)):
         if len(rows.trials):
             findings += [finding for check in checks for finding in check(rows)]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.core.rig import StrikerTable
-from dentscope.recordings import read
+from dentscope.recordings import audit, read
 from dentscope.recordings.checks.contact import _budget, _supply, check_energy, check_force
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
@@ -200,6 +200,20 @@ def test_an_impulse_is_a_quarter_to_all_of_peak_force_times_duration(set_of):
     assert _pulse(set_of, 1.01).severity is Severity.CONSISTENT
     assert _pulse(set_of, 1.015).severity is Severity.CONTRADICTION
     assert _pulse(set_of, 1.01).significance == pytest.approx(0.01 / 1.01 / 0.003, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("strength", "said"), [(174, "CAUTION"), (250, "CONSISTENT"), (300, "CONSISTENT")]
+)
+def test_a_hardness_that_is_not_of_the_strength_is_told(set_of, strength, said):
+    """840 MPa are of 300 MPa (2.8); of 174, ln(4.83/2.8) is 4.7 of hypot(3, 5.2, 10) per cent."""
+    Sy, hard = f"{{ value = {strength}e6, std = 9e6 }}", "{ value = 840e6, std = 25.2e6 }"
+    found = set_of(target=f"Sy_Pa = {Sy}\nhardness_Pa = {hard}\n",
+                   angle_deg=[90], impact_speed_m_s=[1])  # fmt: skip
+    told = of_check(audit(found).findings, "hardness")
+    assert told.severity.name == said
+    off = math.log(840 / strength / 2.8) / math.hypot(0.03, 9 / strength, 0.1)
+    assert told.significance == pytest.approx(off, abs=1e-9)
 
 
 DENSE = "density_kg_m3 = 7800\n"
