@@ -80,7 +80,8 @@ def read_toml(path: Path) -> dict[str, Any]:
             f"cannot be read ({why})", source=str(path), allowed="a text saved as UTF-8"
         ) from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"not valid TOML ({error})", source=str(path)) from None
+        allowed = "a point in a number, as 0.5" if _has_comma(content, str(error)) else ""
+        raise InputError(f"not valid TOML ({error})", source=str(path), allowed=allowed) from None
     except ValueError:  # Python converts no whole number of more than 4300 digits
         raise InputError("a number of too many digits", source=str(path)) from None
     except RecursionError:
@@ -91,6 +92,13 @@ def read_toml(path: Path) -> dict[str, Any]:
     raise InputError(
         "tables or lists nested too deep", source=str(path), allowed=f"up to {_TOML_DEPTH}"
     )
+
+
+def _has_comma(content: bytes, error: str) -> bool:
+    """Whether the line that an error names has a number with a decimal comma."""
+    at = re.search(r"line (\d+)", error)
+    line = content.split(b"\n")[int(at[1]) - 1] if at else b""
+    return re.search(rb"=\s*[-+]?\d+,\d", line) is not None
 
 
 def _depth_at_most(most: int, content: Any) -> bool:

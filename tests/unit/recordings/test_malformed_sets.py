@@ -68,6 +68,7 @@ CASES = {
     # set.toml
     "no set.toml": ({"toml": None}, r"set\.toml: no such file"),
     "not TOML": ({"toml": "format = \n"}, r"set\.toml: not valid TOML"),
+    "decimal comma": (toml("mass_kg = 0.5", "mass_kg = 0,5"), r"not valid TOML .*a point in a num"),
     "empty TOML": ({"toml": ""}, r"set\.toml: format: missing"),
     "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
     "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
