@@ -10,7 +10,7 @@ Box and Hill (Technometrics 9 (1967) 57) and of Buzzi-Ferraris and Forzatti (Che
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,7 +33,7 @@ from .session import Option, Proposal, Session, session_of, takes
 _ELSEWHERE = ("build", "observable")  # what the rig has not had
 _BY = {"Sy_Pa": "hardness", "mass_kg": "weigh", "tip_radius_m": "calliper", "radius_m": "calliper"}
 _SETTLE = {
-    "hardness": "test the hardness of {}: a third of it is the strength",
+    "hardness": "test the hardness of {}: hardness_Pa in place of Sy_Pa",
     "weigh": "weigh {}", "calliper": "measure the radius of {} with a calliper or in a picture",
 }  # fmt: skip
 _ERRORS = dict(RULES.settled)
@@ -117,6 +117,9 @@ class _Plan:
         self.rig, self.laws = self.problem.rig, dict(self.problem.laws)
         seen = dict.fromkeys((*self.problem.cells.observable, *bench.reads))
         self.measured = [n for n in seen if "impact" in OBSERVABLES[n].of]
+        # of a press only what is read already, where that is known
+        known = any(n in seen for n in _PRESSED) or bench.reads
+        self.pressed = [n for n in _PRESSED if n in seen or not known]
         self.noise = {name: _noise(simulator, name) for name in self.measured}
         self.repeats = bench.repeats or max(int(np.median(self.problem.cells.count)), 1)
         self.strike = self.repeats * takes(bench, "strike")
@@ -171,10 +174,10 @@ def _options(simulator: Simulator) -> _Plan:
         new.add(k, {n: worse * x for n, x in new.noise.items()}, new.told(c, new.strike))
     _add_instruments(new)
     if not math.isnan(each := takes(problem.bench, "press")):
-        for c in feasible.presses_of(problem):
+        for c in feasible.presses_of(problem) if new.pressed else ():
             new.conditions.append(c.condition)
-            read = {name: _press_noise(problem, name) for name in _PRESSED}
-            new.add(len(new.conditions) - 1, read, _pressing(c, each * RULES.press_each))
+            read = {name: _press_noise(problem, name) for name in new.pressed}
+            new.add(len(new.conditions) - 1, read, _pressing(c, each * RULES.press_each, read))
     _settling(new)
     return new
 
@@ -220,13 +223,13 @@ def _settling(new: _Plan) -> None:
         new.settled.append(Settled(key, _ERRORS[kind]))
 
 
-def _pressing(c: feasible.Candidate, minutes: float) -> Proposal:
+def _pressing(c: feasible.Candidate, minutes: float, read: Iterable[str]) -> Proposal:
     assert c.condition.press is not None
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "load_N": c.condition.press.load,
         "repeats": float(RULES.press_each),
     }  # fmt: skip
-    words = " and ".join(OBSERVABLES[n].label for n in _PRESSED)
+    words = " and ".join(OBSERVABLES[n].label for n in read)
     return Proposal(f"{c.change}, measuring {words}", 0.0, "press", trial=trial, minutes=minutes)
 
 

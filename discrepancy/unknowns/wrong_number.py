@@ -43,8 +43,8 @@ _OF_TARGET = {
 _OF_STRIKER = {**_OF_TARGET, "tip_radius_m": _OF_TARGET["radius_m"]}
 del _OF_STRIKER["radius_m"]  # of a rod's shank, which moves no reading by much
 _SETTLED = {
-    "strength": "slow presses or a hardness test: if they give what is stated, the metal feels the "
-    "rate of the blows",
+    "strength": "a hardness test: if it gives what is stated, the metal feels the rate of the "
+    "blows",
     "modulus": "the metal's name or certificate", "radius": "a calliper, or a picture of the tip",
     "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
     "friction": "a slope or a pull with a spring balance",

@@ -1,10 +1,14 @@
 """Quasi-static presses in a diagnosis: what acts on them, what they share with impacts."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.experiments.feasible import presses_of
+from dentscope.discrepancy.experiments.next_experiment import _options
 from dentscope.discrepancy.inference.fit import baseline_situations
 from dentscope.discrepancy.nulls.ensemble import press
 from dentscope.discrepancy.nulls.laws import NullCurve
@@ -13,6 +17,7 @@ from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
 from dentscope.dynamics import Approach, strike
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
+from dentscope.recordings.bench import Bench
 
 NOISE = {
     "restitution": 0.004, "permanent_depth_m_relative": 0.02, "dent_diameter_m_relative": 0.01,
@@ -94,6 +99,20 @@ def test_presses_are_proposed_within_a_bench_press_and_as_deep(problem):
     speeds = [c.condition.speed for c in found]
     assert speeds[::3] == pytest.approx([1.0, 3.0], rel=0.05)
     assert all("press ball slowly" in c.change for c in found)
+
+
+def test_a_press_is_read_as_the_rig_reads_and_a_strength_has_its_key(problem):
+    rows = "".join(re.sub(r"[^,]*(,[^,]*)$", r"\1", row) + "\n" for row in IMPACTS.split())
+    given = problem(rows)
+    told = [p.change for _, p in _options(Simulator(given)).options]
+    assert any("press ball" in text for text in told)
+    assert not any("press ball" in text and "crater depth" in text for text in told)
+    assert any("the flat: hardness_Pa in place of Sy_Pa" in text for text in told)
+    known = replace(problem("a,ball,90,1.0,,,0.45,,\nb,ball,90,3.0,,,0.35,,\n"), bench=Bench(
+        reads=("dent_diameter_m",)))  # fmt: skip
+    pressed = [p.change for _, p in _options(Simulator(known)).options if p.kind == "press"]
+    assert pressed
+    assert not any("crater depth" in text for text in pressed)
 
 
 def test_null_laws_are_pressed_along_their_own_curve():
