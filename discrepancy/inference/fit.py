@@ -71,6 +71,11 @@ class Fit:
         return tuple(m.name for m in self.mechanisms)
 
     @property
+    def form(self) -> Array:
+        """Posterior mean of each component of the mechanisms' form, (c,)."""
+        return np.asarray(self.linear.form.T @ self.linear.solve(self.residual))
+
+    @property
     def name(self) -> str:
         """Names of the mechanisms joined by "+"."""
         return label(self.mechanisms)

@@ -67,7 +67,6 @@ def page(v: Verdict, story: Story) -> str:
         corrected=correction(v.corrections) if v.corrections else "",
         path=path(v.history) if v.history else "",
         paths=list(zip(_SHAPES, words, strict=False)),
-        mechanisms=v.mechanisms,
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),
         weightless=any(not p.weight for p in story.points),

@@ -39,7 +39,7 @@ class SeriesPoint:
     - `measured`, `low`, `high`: mean of the repeats and its standard error on both sides.
     - `as_stated`: simulated with every number as stated.
     - `best_without`: simulated with the numbers moved as far as it takes, nothing added.
-    - `with_verdict`: the same with the mechanisms that are named; nan without any.
+    - `with_verdict`: the same with what is named, its form moved too; nan without any.
     - `weight`: whether it counts: a value far off everything else does not.
     """
 
@@ -107,7 +107,9 @@ def series_of(c: Condition) -> str:
 def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
     """Return every number of the comparison."""
     cells, conditions = v.problem.cells, v.problem.conditions
-    base, stated = v.ranking.base, v.stated
+    base, stated, best = v.ranking.base, v.stated, v.best
+    # what the fit made of it: a form that is known within a factor takes much of a large effect
+    named = best.prediction + best.linear.form @ best.form
     along = againsts(v)
     counts = np.array([i not in v.problem.weightless for i in range(len(cells))])
     std = np.where(counts, cells.std, cells.std / RULES.outlier_wider)
@@ -125,7 +127,7 @@ def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
                 {a.key: float(a.values[k]) for a in along},
                 shown(cells.value[i]), shown(cells.value[i] - std[i]),
                 shown(cells.value[i] + std[i]), shown(stated[i]), shown(base.prediction[i]),
-                shown(v.best.prediction[i]) if v.best.mechanisms else math.nan,
+                shown(named[i]) if best.mechanisms else math.nan,
                 bool(counts[i]),
             )
         )  # fmt: skip

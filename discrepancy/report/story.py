@@ -8,29 +8,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.observables import OBSERVABLES
 from ...dynamics.files.second import second_of
 from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
 from .next_session import change_lines, next_lines
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
-from .text import STORY_LEAST, headline, nowhere, own_parameters, why
-from .wording import (
-    compared,
-    counted,
-    explanation,
-    interval,
-    joined,
-    miss_sentences,
-    number_name,
-    percent,
-    quantity,
-    title_of,
-)
+from .text import STORY_LEAST, headline, held, nowhere, own_parameters, predicted, why
+from .wording import explanation, interval, miss_sentences, number_name, percent, quantity, title_of
 
 # limit: explanations of a picture [-]: a screen
 _STORY_ROWS = 8
+
+FORM = "the textbook form of the mechanism"  # its own error
 
 # limit: numbers that moved, of a legend [-]: a line
 _STORY_MOVED = 3
@@ -68,7 +58,7 @@ class Story:
     - `nowhere`: what to think of it where places and verdict seem to contradict each other.
     - `parts`, `explanations`: probability of each mechanism to take part, and of each explanation.
     - `found`: numbers of the mechanisms that are named, with intervals.
-    - `prediction`: how the trials kept out of the fit are predicted, in one sentence.
+    - `prediction`: how the trials left out of the fit are predicted, in one sentence.
     - `doubt`: what the uncertainty of the comparison is made of.
     - `numbers`, `scores`, `excluded`, `limits`: tables for those who want to know.
     - `next_step`, `further`: whether to go on; steps of the next session, and what its outcome
@@ -139,7 +129,7 @@ def story_of(v: Verdict) -> Story:
             Bar(explanation(k, v.titles), p) for k, p in v.probabilities.items() if p >= STORY_LEAST
         ),
         found=_found(v),
-        prediction=_prediction(v),
+        prediction=f"{predicted(v).capitalize()}." if v.best.mechanisms else "",
         doubt=_doubt(v),
         numbers=_numbers(v),
         scores=_scores(v),
@@ -155,13 +145,10 @@ def story_of(v: Verdict) -> Story:
 
 def _summary(v: Verdict) -> str:
     p = v.problem
-    trials = sum(len(c.trials) for c in p.conditions)
-    seen = joined([OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable)])
     rate = "" if p.law_name == "hertz" else ", or rate of the metal"
     return (
-        f"{counted(trials, 'trial')} at {counted(len(p.conditions), 'condition')}, "
-        f"{counted(len(p.cells), 'number')} ({seen}), "
-        f"compared with a simulation without vibration{rate} (contact law: {p.law_name})."
+        f"{held(v)}, compared with a simulation without vibration{rate} "
+        f"(contact law: {p.law_name})."
     )
 
 
@@ -169,9 +156,10 @@ def _took(v: Verdict, fitted: Fit) -> str:
     """How well a simulation fits, and which numbers it moved further than chance would."""
     p, struck = v.problem, _struck(v)
     names = [number_name(n.name, struck=struck) for n in p.nuisances]
-    names += ["the contact law"] * (len(fitted.z) - len(names))
+    names += ["the contact law"] * (len(fitted.z) - len(names)) + [FORM] * len(fitted.form)
     far: dict[str, float] = {}
-    for name, z in sorted(zip(names, fitted.z, strict=True), key=lambda item: -abs(item[1])):
+    moved = zip(names, [*fitted.z, *fitted.form], strict=True)
+    for name, z in sorted(moved, key=lambda item: -abs(item[1])):
         if abs(z) > PULLED:
             far.setdefault(name, float(z))
     told = ", ".join(f"{name} {z:+.1f}" for name, z in list(far.items())[:_STORY_MOVED])
@@ -191,20 +179,6 @@ def _found(v: Verdict) -> ToldCells:
     return ToldCells(("number", "value", "90 % interval", "where its range comes from"), rows)
 
 
-def _prediction(v: Verdict) -> str:
-    i = v.improvement
-    if not v.best.mechanisms:
-        return ""
-    if math.isnan(i["held_out_extended"]):
-        return "No condition could be kept out of the fit to try the prediction on."
-    return (
-        f"Tried on conditions that were kept out of the fit, whole speeds, strikers and angles at "
-        f"a time ({i['trials']:.0f} predictions): off by {i['held_out_extended']:.1f} standard "
-        f"errors with it, {i['held_out_baseline']:.1f} without, where noise alone leaves 1; "
-        f"{compared(i)}."
-    )
-
-
 def _doubt(v: Verdict) -> tuple[Bar, ...]:
     """Mean share of each source in the variance between recording and simulation."""
     p, linear = v.problem, v.best.linear
@@ -214,11 +188,13 @@ def _doubt(v: Verdict) -> tuple[Bar, ...]:
     struck = _struck(v)
     for k, n in enumerate(p.nuisances):
         name = number_name(n.name, struck=struck)
-        sources[name] = sources.get(name, 0.0) + linear.J[:, k] ** 2
-    sources["the contact law's own error"] = np.sum(linear.J[:, p.n_nuisances :] ** 2, axis=1)
-    sources["the textbook form of the mechanism"] = np.sum(linear.form**2, axis=1)
+        sources[name] = sources.get(name, 0.0) + linear.scaled[:, k] ** 2
+    sources["the contact law's own error"] = np.sum(linear.scaled[:, p.n_nuisances :] ** 2, axis=1)
+    sources[FORM] = np.sum(linear.form**2, axis=1)
     bars = [Bar(k, float(np.mean((x / total)[counts]))) for k, x in sources.items()]
-    return tuple(b for b in sorted(bars, key=lambda b: -b.share) if b.share >= 0.01)
+    bars = sorted((b for b in bars if b.share >= 0.01), key=lambda b: -b.share)
+    rest = 1.0 - sum(b.share for b in bars)
+    return (*bars, *[Bar("all else", rest)] * (rest >= 0.005))
 
 
 def _numbers(v: Verdict) -> ToldCells:

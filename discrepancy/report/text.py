@@ -197,15 +197,7 @@ def nowhere(v: Verdict) -> str:
 
 def lines(v: Verdict) -> list[str]:
     """Return the finding as lines for a terminal."""
-    p = v.problem
-    trials = sum(len(c.trials) for c in p.conditions)
-    seen = ", ".join(OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable))
-    out = [
-        f"{v.name}: {counted(trials, 'trial')}, {counted(len(p.conditions), 'condition')}, "
-        f"{counted(len(p.cells), 'number')} ({seen})",
-        "",
-        headline(v),
-    ]
+    out = [f"{v.name}: {held(v)}", "", headline(v)]
     flagged = [a["message"] for a in v.audit]
     if flagged:
         out += ["", "Inputs", *(f"  {m}" for m in flagged)]
@@ -216,14 +208,7 @@ def lines(v: Verdict) -> list[str]:
         out += ["", "What explains it"]
         for name, value, between in own_parameters(v):
             out.append(f"  {name}{':' if value == _UNTOLD else ' ='} {value} (90 %: {between})")
-        i = v.improvement
-        out.append(
-            "  no condition could be left out of the fit to try the prediction on"
-            if math.isnan(i["held_out_extended"])
-            else f"  on conditions left out of the fit the miss goes from "
-            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors, where "
-            f"noise alone leaves 1: {compared(i)}"
-        )
+        out.append(f"  {predicted(v)}")
     part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
     out += ["", "Probability that it takes part"]
     out += [f"  {percent(x):>14}  {k}: {title_of(k, v.titles)}" for k, x in list(part.items())[:5]]
@@ -250,6 +235,28 @@ def lines(v: Verdict) -> list[str]:
     if notes:
         out += ["", "Notes", *(f"  {n}" for n in notes)]
     return out
+
+
+def held(v: Verdict) -> str:
+    """Return what was compared."""
+    p = v.problem
+    trials = sum(len(c.trials) for c in p.conditions)
+    seen = ", ".join(OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable))
+    return (
+        f"{counted(trials, 'trial')}, {counted(len(p.conditions), 'condition')}, "
+        f"{counted(len(p.cells), 'number')} ({seen})"
+    )
+
+
+def predicted(v: Verdict) -> str:
+    """Return how the trials left out of the fit are predicted by what is named."""
+    i = v.improvement
+    if math.isnan(i["held_out_extended"]):
+        return "no condition could be left out of the fit to try the prediction on"
+    return (
+        f"on conditions left out of the fit the miss goes from {i['held_out_baseline']:.1f} to "
+        f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: {compared(i)}"
+    )
 
 
 def own_parameters(v: Verdict) -> list[tuple[str, str, str]]:

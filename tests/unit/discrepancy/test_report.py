@@ -1,17 +1,29 @@
 """The report draws what its legend says, and its sentences do not contradict each other."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from dentscope.discrepancy.choice.families import Family
 from dentscope.discrepancy.findings import WrongInput
+from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
-from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
+from dentscope.discrepancy.report.series import (
+    STATED,
+    WITH,
+    WITHOUT,
+    Against,
+    SeriesPoint,
+    points_of,
+)
+from dentscope.discrepancy.report.story import FORM, _doubt, _took
 from dentscope.discrepancy.report.text import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
+from dentscope.discrepancy.unknowns.nuisances import Nuisance
 from dentscope.discrepancy.unknowns.wrong_number import WrongNumber, WrongReading
 from dentscope.dynamics.mechanisms import MECHANISMS
 
@@ -188,6 +200,24 @@ def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> No
     assert (told["value"], told["low"], told["factor"], told["high"]) == (None, 1.12, 1.15, 1.18)
     told = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6).told
     assert (told["value"], told["low"], told["high"]) == (3e8, 2.8e8, 3.2e8)
+    assert "press" not in told["settled_by"]  # of which the set may hold some
+
+
+def test_what_is_drawn_and_doubted_is_all_that_the_comparison_counts(toy: Any) -> None:
+    """Of a variance of 1 + 3^2 + 5^2 + 1 the parts; of a residual of 36 the form takes 26."""
+    strength = Nuisance("target.Sy_Pa", "Pa", 3e8, 0.1)
+    given = toy.problem([36.0], derivative=[[1.0]], nuisances=(strength,))
+    linear = Linear(np.eye(1), np.ones((1, 1)), np.array([[5.0, 1.0]]), np.array([3.0]))
+    best = replace(toy.fit_of([36.0]), linear=linear, mechanisms=(toy.Effect("a", (0.0,)),),
+                   prediction=np.zeros(1), z=np.zeros(1))  # fmt: skip
+    v: Any = SimpleNamespace(problem=given, best=best, stated=np.zeros(1),
+                             ranking=SimpleNamespace(base=best))  # fmt: skip
+    shares = {bar.name: 36.0 * bar.share for bar in _doubt(v)}
+    noise = {"scatter and noise of the readings": 1.0}
+    assert shares == pytest.approx({FORM: 26.0, "yield strength of the flat": 9.0} | noise)
+    (drawn,) = points_of(v)
+    assert drawn.with_verdict == pytest.approx(26.0)
+    assert f"{FORM} +5.0" in _took(v, best)
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.98, True), (0.87, False)])

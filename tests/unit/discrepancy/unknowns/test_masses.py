@@ -7,6 +7,7 @@ import dentscope as ds
 import numpy as np
 import pytest
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
+from dentscope.discrepancy.report import page, story_of
 from dentscope.recordings import audit, read
 
 SET = """format = "recording-set/1"
@@ -78,6 +79,9 @@ def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> 
         verdict = ds.diagnose(written(tmp_path, radius=0.01, mass=mass, rows=rows)).verdict
         (wrong,) = verdict.wrong_inputs
         assert wrong.number.key == "strikers.ball.tip_radius_m"
+        report = page(verdict, story_of(verdict))
+        assert "<h2>What explains it</h2>" in report
+        assert f"open, solid: {wrong.number.title}, with the verdict" in report
         assert wrong.probability > sure
         assert wrong.would_be is not None
         assert wrong.would_be[1] < 5.1e-3
