@@ -27,6 +27,7 @@ LAMMPS = """\
 {told}
 variable v index {speeds}
 variable dt index {steps}
+variable steps index {counts}
 variable flat index {flat}
 variable balls index {balls}
 label drop
@@ -46,10 +47,9 @@ pair_coeff * * ${{balls}}
 {fixes}
 fix move all nve/sphere
 timestep ${{dt}}
-thermo 2000
-run 2000
+run ${{steps}}
 print "v = ${{v}} m/s: restitution {printed}"
-next v dt flat balls
+next v dt steps flat balls
 jump SELF drop
 """
 """Input of LAMMPS: a drop for each speed."""
@@ -70,19 +70,21 @@ def lammps_lines(
     it strikes `second`; `of_balls` are two balls, from `two_balls`, at the same speeds.
     """
     told: list[str] = []
-    given: list[tuple[str, str, float, float]] = []
+    given: list[tuple[str, str, float, float, int]] = []
     for k, row in enumerate(rows):
         other = of_balls[k] if of_balls else row
         with_two = two_balls(pair, 1.0)[0] if of_balls else pair
         ours = _law(row, pair, friction, "" if second else ", the flat", told)
         theirs = _law(other, with_two, friction, ", two balls", told if of_balls else [])
         if ours and theirs:
-            time = min(one.named(SOFTENED).blow.time for one in (row, other))  # type: ignore[union-attr]
-            given.append((ours, theirs, row.law.speed, time / 1000.0))
+            times = [one.named(SOFTENED).blow.time for one in (row, other)]  # type: ignore[union-attr]
+            # steps of the shorter contact, until the longer one is over
+            step = min(times) / 1000.0
+            given.append((ours, theirs, row.law.speed, step, round(2.0 * max(times) / step)))
     lines = [f"# {line}" for line in told]
     if not given:
         return "\n".join(lines) + "\n"
-    flat, balls, speeds, steps = zip(*given, strict=True)
+    flat, balls, speeds, steps, counts = zip(*given, strict=True)
     tangential = "none, for the file states no friction.coefficient"
     if friction > 0.0:
         tangential = (
@@ -93,6 +95,7 @@ def lammps_lines(
     return LAMMPS.format(
         told="\n".join(lines), tangential=tangential, **scene,
         speeds=" ".join(f"{v:g}" for v in speeds), steps=" ".join(f"{t:.4e}" for t in steps),
+        counts=" ".join(map(str, counts)),
         flat=" ".join(f'&\n "{one}"' for one in flat),
         balls=" ".join(f'&\n "{one}"' for one in balls),
     )  # fmt: skip

@@ -100,6 +100,10 @@ def laws_of(lines, name):
     return [part.split() for part in given.split('"')[1::2]]
 
 
+def number_of(lines, name):
+    return float(lines.split(f"variable {name} index ")[1].split()[0])
+
+
 def test_two_balls_have_half_the_mass_and_half_the_radius():
     """Hertz (Johnson 11.4) for two balls of 2.5 mm and 0.1 g: depth and time from m/2 and R/2."""
     elastic = Material(E=70e9, nu=0.33, density=2700.0)
@@ -158,7 +162,7 @@ def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, capsys):
 
 
 def lammps_blow(coefficients, *, R, mass, speed):
-    """Restitution and depth of LAMMPS's `hertz K E ... damping tsuji`, from its manual.
+    """Restitution, depth and time of LAMMPS's `hertz K E ... damping tsuji`, from its manual.
 
     F = K R^(1/2) d^(3/2) + eta d', eta = alpha(E) (m F_e/d)^(1/2); no force where d < 0.
     """
@@ -177,7 +181,7 @@ def lammps_blow(coefficients, *, R, mass, speed):
 
     parts.terminal, parts.direction = True, -1.0
     found = solve_ivp(rates, (0.0, 1e3), [1e-12, 1.0], events=parts, rtol=1e-9, atol=1e-12)
-    return -found.y[1, -1], scale * found.y[0].max()
+    return -found.y[1, -1], scale * found.y[0].max(), scale / speed * found.t[-1]
 
 
 ELASTIC = {"E_Pa": 2e11, "nu": 0.3}
@@ -215,7 +219,7 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
         (words,) = laws_of(lines, "flat" if wall else "balls")
         at = words.index("hertz") + 1
         half = 1.0 if wall else 0.5
-        e, depth = lammps_blow(
+        e, depth, time = lammps_blow(
             [float(x) for x in words[at : at + 2]], R=half * R, mass=half * mass, speed=speed
         )
         place = "ball on flat" if wall else "two balls"
@@ -223,7 +227,8 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
             r for r in table
             if r["model"] in ("fitted", "jackson-green") and r["contact"] == place
         )  # fmt: skip
-        assert e == pytest.approx(float(law["restitution"]), abs=2e-3)
+        assert e == pytest.approx(float(law["restitution"]), abs=2e-4)
+        assert 1.2 * time < math.prod(number_of(lines, name) for name in ("dt", "steps"))
         assert depth == pytest.approx(float(law["depth_m"]), rel=1e-2)
 
 
