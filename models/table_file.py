@@ -87,13 +87,13 @@ def table_from(content: object, *, source: str, name: str) -> TableLaw:
     flat = found.flat.to_material("flat", source=source)
     curve = LoadingCurve(**{k: np.array(v) for k, v in found.loading})
     turns = Turns(**{k: np.array(v) for k, v in found.unloading})
-    for name, part in (("loading", curve), ("unloading", turns)):
+    for key, part in (("loading", curve), ("unloading", turns)):
         if len({len(v) for v in part}) != 1:
             raise InputError(
-                "columns of unequal length", source=source, key=name, allowed="as many in each"
+                "columns of unequal length", source=source, key=key, allowed="as many in each"
             )
         if not np.all(np.diff(part.depth) > 0.0):
-            raise InputError("falls", source=source, key=f"{name}.depth", allowed="rising depths")
+            raise InputError("falls", source=source, key=f"{key}.depth", allowed="rising depths")
     if len(curve.depth) < 2:
         raise InputError(
             f"{len(curve.depth)} depths", source=source, key="loading",

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...core.errors import InputError
 from ...core.inputs.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
 from ...models.choose import follows_flow, past_curves, strains_under
@@ -70,7 +71,11 @@ def lacking(setup: Setup, scene: Scene, found: Impact) -> dict[str, Lack]:
         numbers = (_numbers(e, what, S, strain) for e in chosen)
         sizes = sorted(numbers, key=lambda one: next(iter(one.values())))
         ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
-        blows = tuple(last_blow(setup.with_mechanism(mechanism, one), scene.law) for one in ends)
+        try:
+            with_it = [setup.with_mechanism(mechanism, one) for one in ends]
+            blows = tuple(last_blow(one, scene.law) for one in with_it)
+        except InputError:  # the table of one pair knows no stronger one
+            continue
         kind = chosen[0].kind
         same = named is not None and named.kind == kind
         others = "others of its kind" if same else "the nearest in the table"

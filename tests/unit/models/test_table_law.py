@@ -10,6 +10,7 @@ from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, DomainWarning, critical_depth, law_named
 from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.table_file import write_table
+from dentscope.start.blows import impact
 
 PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1.h5"
 
@@ -76,6 +77,14 @@ def test_another_size_and_unit_of_stress_is_the_same_pair_and_another_metal_is_n
     assert larger == pytest.approx(50.0 * float(law.loading(pair, d)), rel=1e-9)
     with pytest.raises(InputError, match=r"table is of another pair .*sphere E_Pa"):
         law.loading(Pair(pair.sphere.with_(Sy=1.1 * pair.sphere.Sy), pair.flat, pair.R), d)
+
+
+def test_a_blow_of_its_own_pair_is_told_under_the_files_name(solved, file):
+    """What the file does not say of rate and hardening would be another pair's: it is left out."""
+    pair = solved[0].case.pair
+    blow = impact(pair, law=str(file), speed=1.0, mass=7800.0 * 4.2 * pair.R**3)
+    assert str(file) in repr(blow)
+    assert any("strain rate about" in line for line in blow.checks())
 
 
 def test_it_states_the_uncertainty_of_its_solve_and_its_end(solved, file):
