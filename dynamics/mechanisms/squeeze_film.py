@@ -56,7 +56,10 @@ class SqueezeFilm(Mechanism):
             eta = 1.85e-5  # air; a liquid would have been stated
         if eta < 1e-4:
             loss = max(_film_loss(s, 8.0 * eta) / s.approach.speed for s, _ in situations)
-            return f"air takes at most {loss:.1e} of the approach speed; no liquid is stated"
+            return (
+                f"air takes at most {loss:.1e} of the approach speed; environment.viscosity_Pa_s "
+                "states no liquid"
+            )
         return ""
 
     def usual(self, around: Surroundings, *, sized: bool = False) -> Values:

@@ -71,9 +71,15 @@ def test_a_wrong_mechanism_is_one_line(lines, words):
 
 
 def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():
-    file = setup(BALL + "[mechanisms.adhesion]\nwork_of_adhesion_J_m2 = 0.1\n")
-    with pytest.raises(InputErrors, match=r"mechanisms.adhesion: pulling the bodies apart takes"):
+    file = setup(BALL + "[mechanisms.squeeze-film]\nfilm_drag_Pa_s = 0.1\n")
+    with pytest.raises(InputErrors, match=r"mechanisms.squeeze-film: .* environment.viscosity_Pa"):
         file.check_laws([LAW])
+
+
+def test_what_changes_nothing_at_one_speed_is_told_there():
+    made = blow(BALL + "[mechanisms.adhesion]\nwork_of_adhesion_J_m2 = 0.1\n")
+    begins = "adhesion changes nothing here: pulling the bodies apart takes"
+    assert any(line.startswith(begins) for line in made.checks())
 
 
 def test_what_changes_nothing_by_one_law_of_several_is_told():
