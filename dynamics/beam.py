@@ -125,14 +125,9 @@ def _polynomials(degree: int) -> tuple[Array, Array, Array, Array]:
 
 @lru_cache(maxsize=256)
 def rod_modes(
-    length: float,
-    radius: float,
-    material: Material,
-    *,
-    mass: float,
-    count: int,
+    length: float, radius: float, material: Material, *, mass: float, count: int,
     loss_factor: float = 0.0,
-) -> Modes:
+) -> Modes:  # fmt: skip
     """Return the `count` modes of lowest frequency, axial and bending together.
 
     Frequencies follow from the material and the geometry, the modal masses from the stated mass. A

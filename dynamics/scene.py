@@ -273,13 +273,8 @@ _seams_of = attrgetter(*_SEAMS)
 
 
 def scene_of(
-    law: ContactLaw,
-    *,
-    sphere: Material,
-    flat: Material,
-    striker: Striker,
-    approach: Approach,
+    law: ContactLaw, *, sphere: Material, flat: Material, striker: Striker, approach: Approach,
     **seams: Any,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """Return a scene; the pair's radius is the striker's tip radius."""
     return Scene(law, Pair(sphere, flat, striker.tip_radius), striker, approach, **seams)

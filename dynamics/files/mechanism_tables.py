@@ -174,10 +174,11 @@ def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
         size = m.parameters[0]
         if asked.constants[m.name][size.name] == size.neutral:
             stated = getattr(tables[m.name], size.name) is not None
+            beside = f"; or {' and '.join(m.reads)}" if m.reads and not stated else ""
             yield InputError(
                 f"{size.neutral:g} does nothing here" if stated else "missing", source=source,
                 key=f"mechanisms.{m.name}.{size.name}",
-                allowed=f"{size.low:g} to {size.high:g} [{size.unit}]",
+                allowed=f"{size.low:g} to {size.high:g} [{size.unit}]{beside}",
             )  # fmt: skip
         for name in m.stated(asked.around):
             if getattr(tables[m.name], name) is not None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import Field
 
 from ...core.errors import InputError, InputErrors
@@ -271,9 +272,12 @@ class Setup:
         found = impacts(plain, **given, settings=self.settings, asked=self.asked, change=change)
         if self.second is None:
             return found
-        columns = ("approach_spin_rad_s", "rebound_spin_rad_s")
+        columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]
+        relative, both = found["rebound_speed_m_s"], plain.striker.mass
+        own = np.full(len(found), self.file.strikers[self.striker].mass_kg.value)
         return Impacts({
-            **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns}
+            **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns},
+            "rebound_speed_m_s": self.second.own_rebound(relative, speed, both), "mass_kg": own,
         })  # fmt: skip
 
 
@@ -331,12 +335,13 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("impact.striker", "missing", f"one of {names}")
     if impact.striker and impact.striker not in found.strikers:
         add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
-    if (impact.impact_speed_m_s is None) == (impact.drop_height_m is None):
-        add("impact.impact_speed_m_s", "give one of speed and height", "or impact.drop_height_m")
+    speed, height = impact.impact_speed_m_s, impact.drop_height_m
+    if (speed is None) == (height is None):
+        told = "give one of speed and height" + ", not both" * (speed is not None)
+        add("impact.impact_speed_m_s", told, "or impact.drop_height_m")
     if found.gravity_m_s2.value == 0.0:
-        heights = (("impact", impact.drop_height_m), ("sweep", found.sweep.drop_height_m or None))
-        for table, height in heights:
-            if height is not None:
+        for table, fall in (("impact", height), ("sweep", found.sweep.drop_height_m or None)):
+            if fall is not None:
                 add(f"{table}.drop_height_m", "nothing falls where gravity_m_s2 is 0",
                     "impact_speed_m_s")  # fmt: skip
     if impact.support == "sprung" and found.target.support_mass_kg is None:

@@ -126,6 +126,11 @@ def _tables(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 def taken_elsewhere(content: dict[str, Any], *, source: str) -> Iterator[InputError]:
     """Yield a line for what an impact has elsewhere, or has no equation for."""
     bodies = _tables(content)
+    if content.keys() & {"sphere", "flat"} and not content.keys() & {"strikers", "impact"}:
+        yield InputError(
+            "a CASE.toml of `dentscope case`", source=source,
+            allowed="a set-up, which `dentscope impact --new ball` writes",
+        )  # fmt: skip
     if bodies.get("target", {}).get("shape") == "rod":
         yield InputError(
             "'rod'", source=source, key="target.shape",

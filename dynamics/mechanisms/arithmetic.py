@@ -107,11 +107,8 @@ def slower(
     left = seen["restitution"] * arrived
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(left > 0.0, restitution / left, 1.0)
-    return {
-        **seen,
-        "rebound_speed_m_s": seen["rebound_speed_m_s"] * ratio,
-        "restitution": restitution,
-    }
+    rebound = seen["rebound_speed_m_s"] * ratio
+    return {**seen, "rebound_speed_m_s": rebound, "restitution": restitution}
 
 
 def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:

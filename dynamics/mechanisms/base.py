@@ -241,11 +241,9 @@ def attached(
 
 
 def observed(
-    mechanisms: Sequence[Mechanism],
-    situations: Sequence[Situation],
-    constants: Constants,
+    mechanisms: Sequence[Mechanism], situations: Sequence[Situation], constants: Constants,
     seen: Mapping[str, Array],
-) -> Mapping[str, Array]:
+) -> Mapping[str, Array]:  # fmt: skip
     """Return the observables after the motion, with what attached mechanisms change of them.
 
     Undone in the order of attachment: the last change of the approach was the innermost. Each is

@@ -182,14 +182,9 @@ def _table(name: str, kernels: Kernels, numbers: bytes, R: float) -> TableCells:
         return out
 
     return cells_of(
-        columns,
-        0.0,
-        float(count),
-        tolerance=ERROR,
-        start=count,
-        relative=(_FORCE, _RADIUS),
+        columns, 0.0, float(count), tolerance=ERROR, start=count, relative=(_FORCE, _RADIUS),
         bins=16 * count,
-    )
+    )  # fmt: skip
 
 
 def _first_octave(R: float) -> float:

@@ -121,10 +121,7 @@ def _unit_blow(law: Damped, damping: float) -> ExportedBlow:
 
 
 def entered_for(damping: float) -> float:
-    """Return the restitution to enter for Tsuji's damping; the polynomial misses by up to 0.02.
-
-    Its zero lies at 1.0007: where next to nothing is damped, it is above 1.
-    """
+    """Return the restitution to enter for Tsuji's damping; none is 1.0007 (the polynomial)."""
 
     def missed(entered: float) -> float:
         return math.fsum(a * entered**k for k, a in enumerate(TSUJI_DAMPING)) - damping

@@ -71,13 +71,7 @@ def surfaces_left(
 
 
 def _surface(
-    scene: Scene,
-    left: Left,
-    body: Body,
-    mark: Imprint | None,
-    std: float | None,
-    *,
-    edged: bool,
+    scene: Scene, left: Left, body: Body, mark: Imprint | None, std: float | None, *, edged: bool
 ) -> LeftSurface:
     depth = left.of(body)
     shape = None if edged else crater_shape(scene.pair, left, body)

@@ -56,14 +56,9 @@ jump SELF drop
 
 
 def lammps_lines(
-    rows: Sequence[ExportedRow],
-    pair: Pair,
-    *,
-    mass: float,
-    friction: float = 0.0,
-    of_balls: Sequence[ExportedRow] = (),
-    second: StruckSphere | None = None,
-) -> str:
+    rows: Sequence[ExportedRow], pair: Pair, *, mass: float, friction: float = 0.0,
+    of_balls: Sequence[ExportedRow] = (), second: StruckSphere | None = None,
+) -> str:  # fmt: skip
     """An input of LAMMPS that runs as it is: the softened Hertz law at each speed.
 
     `mass` [kg] and Coulomb's `friction` are those of the ball on the flat, or of both spheres where

@@ -93,6 +93,15 @@ def test_momentum_and_energy_are_kept(mass):
         assert before - after == pytest.approx(lost, rel=1e-12, abs=1e-15)
 
 
+def test_a_sweep_has_the_strikers_own_mass_and_rebound():
+    """Of two equal spheres the striker goes on with (1 - e) v/2."""
+    two = setup(TWO + "[sweep]\nimpact_speed_m_s = [0.5, 2.0]\n")
+    found = two.swept(LAWS["fitted"])
+    assert found["mass_kg"] == pytest.approx(0.004084070449666731)
+    on = 0.5 * (1.0 - found["restitution"]) * found["impact_speed_m_s"]
+    assert found["rebound_speed_m_s"] == pytest.approx(-on)
+
+
 def test_spheres_that_slide_on_each_other_keep_the_impulse_of_friction():
     """Sliding throughout takes mu (1 + e) v of the speed of one along the other."""
     two = SecondSphere(BALL.tip_radius, BALL.mass).facing(
