@@ -117,9 +117,10 @@ class _Plan:
         self.rig, self.laws = self.problem.rig, dict(self.problem.laws)
         seen = dict.fromkeys((*self.problem.cells.observable, *bench.reads))
         self.measured = [n for n in seen if "impact" in OBSERVABLES[n].of]
-        # of a press only what is read already, where that is known
-        known = any(n in seen for n in _PRESSED) or bench.reads
-        self.pressed = [n for n in _PRESSED if n in seen or not known]
+        # of a press what is read already, where that is known; a depth's scan has the diameter too
+        read = [n for n in _PRESSED if n in seen]
+        every = "permanent_depth_m" in read or not (read or bench.reads)
+        self.pressed = list(_PRESSED) if every else read
         self.noise = {name: _noise(simulator, name) for name in self.measured}
         self.repeats = bench.repeats or max(int(np.median(self.problem.cells.count)), 1)
         self.strike = self.repeats * takes(bench, "strike")
