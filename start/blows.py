@@ -21,7 +21,6 @@ from ..dynamics.columns import Impacts
 from ..dynamics.files.blow import Blow, blow_of
 from ..dynamics.files.setup import DEFAULT_LAWS, FOLLOWING, Setup, setup_of
 from ..models import Laws, laws_named
-from ..models.base import ContactLaw
 
 _KEYS = {"speed": "impact_speed_m_s", "mass": "mass_kg"}
 _ARRIVALS = ("impact_speed_m_s", "drop_height_m")
@@ -91,7 +90,7 @@ def impact(
     """
     stated = _stated({k: v for k, v in locals().items() if k not in ("setup", "law")})
     chosen = _chosen(setup, stated)
-    return blow_of(chosen, _wanted(law, chosen))
+    return blow_of(chosen, laws_named(law) or laws_named(chosen.laws))
 
 
 def sweep(
@@ -136,7 +135,7 @@ def sweep(
     chosen = _chosen(setup, first, sweep=values)
     if not chosen.sweep.count:
         raise InputError("no values", key="sweep", allowed="speed=[1.0, 2.0], angle_deg=..., ...")
-    laws = _wanted(law, chosen)
+    laws = laws_named(law) or laws_named(chosen.laws)
     chosen.check_laws(laws)
     found, *others = (chosen.swept(one) for one in laws)
     return replace(found.joined(*others), swept=chosen.sweep.swept)
@@ -152,11 +151,6 @@ def _stated(given: dict[str, Any]) -> dict[str, Any]:
             one_number(value, key=key, allowed="one number; several: dentscope.sweep")
         found[_KEYS.get(key, key)] = value.item() if hasattr(value, "item") else value
     return found
-
-
-def _wanted(given: Laws, setup: Setup) -> list[ContactLaw]:
-    """The laws that were asked for, else the set-up's."""
-    return laws_named(given) or laws_named(setup.laws)
 
 
 def _chosen(

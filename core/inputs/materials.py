@@ -49,11 +49,6 @@ class Entry:
         text = " ".join((self.name, self.title, self.kind, self.also, self.note)).lower()
         return all(word in text for word in words.lower().split())
 
-    @property
-    def words(self) -> frozenset[str]:
-        """Whole words of its name and designations."""
-        return _words(f"{self.name} {self.title} {self.also}")
-
     def quantity(self, key: str) -> dict[str, float] | None:
         """Return value and standard deviation as a file writes them; none where unknown."""
         found = self.numbers.get(key)
@@ -102,8 +97,10 @@ def _meant(name: str) -> tuple[Entry, ...]:
     """Entries of a name, or of a designation, which has a digit: words alone are a description."""
     if name in materials():
         return (materials()[name],)
-    words = _words(name) if re.search(r"\d", name) else frozenset()
-    return tuple(one for one in materials().values() if words and words <= one.words)
+    if not re.search(r"\d", name):
+        return ()
+    each = materials().values()
+    return tuple(e for e in each if _words(name) <= _words(f"{e.name} {e.title} {e.also}"))
 
 
 def _words(text: str) -> frozenset[str]:

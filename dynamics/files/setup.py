@@ -245,11 +245,12 @@ class Setup:
         reasons = []
         for plain in (self.plain(law) for law in laws):
             here = asked.idle(swept_scenes(self.sweep, plain, stated=self.stated))
-            # what acts at another speed is told of at this one
-            never = asked.idle([
-                plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS
-            ])  # fmt: skip
-            reasons.append({name: here[name] for name in here if name in never})
+            if here:  # what acts at another speed is told of at this one
+                never = asked.idle([
+                    plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS
+                ])  # fmt: skip
+                here = {name: why for name, why in here.items() if name in never}
+            reasons.append(here)
         everywhere = set.intersection(*(set(one) for one in reasons))
         if everywhere:
             raise InputErrors(tuple(
