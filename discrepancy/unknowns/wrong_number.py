@@ -35,7 +35,7 @@ WRONG = "wrong-input:"
 # limit: how well a density is known [-]: alloys of a kind
 _DENSITY = 0.02
 
-_SOURCE = "slips of sheets: units, a diameter for a radius, another temper (module's docstring)"
+_SOURCE = "slips of sheets: units, a diameter for a radius, another temper"
 _OF_TARGET = {
     "Sy_Pa": ("strength", "Pa"), "E_Pa": ("modulus", "Pa"), "radius_m": ("radius", "m"),
     "mass_kg": ("mass", "kg"),
