@@ -26,6 +26,7 @@ from .choice.pairs import with_pairs
 from .choice.thresholds import FitTest, Nulls, fit_test, null_residuals
 from .comparison.forward import Point, Simulator
 from .comparison.problem import problem_of
+from .comparison.units import with_units
 from .correction import correct
 from .experiments.next_experiment import propose
 from .findings import After, Verdict
@@ -132,6 +133,7 @@ def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> tu
 
 def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained:
     """Fit the baseline, every wrong number and mechanism, and the pairs that gain by it."""
+    simulator = simulator.of(with_units(simulator))
     library = (*MECHANISMS, *NAMELESS, *asked.own, *simulator.problem.wrong_numbers)
     ranking = rank(simulator, library, progress=asked.progress)
     simulator = simulator.of(ranking.problem)

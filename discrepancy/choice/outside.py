@@ -47,7 +47,8 @@ def odd_repeats(problem: Problem) -> float:
     """Ln odds, by the repeats alone, that something is outside which no simulation knows."""
     found = [_worth(d.log_p) for d in problem.drifts]
     found += [_worth(f.log_p) for f in problem.followed]
-    found += [_of_scatter(s) for s in problem.scatters]
+    # in another unit than their noise, repeats scatter as they would
+    found += [_of_scatter(s) for s in problem.scatters if s.observable not in problem.misread]
     return max(found, default=-math.inf)
 
 

@@ -63,6 +63,8 @@ class Problem:
     """What can be done next."""
     contradicted: frozenset[str] = frozenset()
     """Keys of masses and radii that contradict a ball's density, and could be so far off."""
+    misread: Mapping[str, float] = field(default_factory=dict)
+    """Keys of what is off by a power of ten, and by which."""
 
     @property
     def n_nuisances(self) -> int:
@@ -127,7 +129,14 @@ class Problem:
         fallen = max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0)
         observed = tuple(dict.fromkeys(self.cells.observable))
         oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
-        found = wrong_numbers(known, strikers, observed, fallen=fallen, oblique=oblique)
+        found = wrong_numbers(
+            frozenset(known),
+            strikers,
+            observed,
+            fallen=fallen,
+            oblique=oblique,
+            misread=self.misread,
+        )
         return tuple(found)
 
     @property

@@ -26,7 +26,7 @@ def outlying(problem: Problem, judge: Fit) -> Mask:
     """
     residual, total = judge.residual, judge.linear.total
     found = np.zeros(len(residual), dtype=bool)
-    backed = np.zeros(len(residual), dtype=bool)
+    backed = np.isin(problem.cells.observable, list(problem.misread))
     own = np.diag(judge.linear.noise)
     near = _neighbours(problem)
     most = max(int(RULES.outlier_share * len(residual)), 1)

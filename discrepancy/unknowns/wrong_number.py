@@ -10,7 +10,7 @@ for cold-drawn steel 1.9, a hardness for a strength 3).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeGuard
 
@@ -32,6 +32,9 @@ from ..rules import RULES
 WRONG = "wrong-input:"
 """Begins the name of every such explanation; the rest is the number's key."""
 
+SPEED = "speed.scale"
+"""Key of the factor on all speeds of approach."""
+
 # limit: how well a density is known [-]: alloys of a kind
 _DENSITY = 0.02
 
@@ -52,6 +55,9 @@ _SETTLED = {
     "angle": "a square on the flat: 90 degrees is upright",
     "reading": "a gauge block, or the same mark by another instrument",
 }  # fmt: skip
+# limit: how far off a prediction is beside a power of ten [-]
+NEAR_UNIT = 2.5
+
 _SLIPS = (
     ("radius", 0.5, "a diameter stands for the radius"),
     ("radius", 2.0, "half of the radius stands for it"),
@@ -69,10 +75,11 @@ class WrongNumber(Mechanism):
     """A number of the sheet that is off by a factor.
 
     - `key`, `unit`: of set.toml, as in the parameters of a verdict; the SI unit, "-" of what is a
-      factor itself.
+      factor itself. `keys`: of every striker, where one slip is in all.
     - `kind`: strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
       kind share a prior.
     - `title`: as a clause.
+    - `times`: a power of ten that it is off by beside a factor near 1, where nothing less would do.
     """
 
     static = True
@@ -81,13 +88,17 @@ class WrongNumber(Mechanism):
     """Of how far it is off, as in verdict.json; `told` is it in words, around the number."""
     told = "By a factor of {}"
 
-    def __init__(self, key: str, kind: str, title: str, unit: str = "-") -> None:
-        self.key, self.kind, self.title, self.unit = key, kind, title, unit
+    def __init__(
+        self, key: str, kind: str, title: str, unit: str = "-", *, times: float = 1.0,
+        keys: tuple[str, ...] = (),
+    ) -> None:  # fmt: skip
+        self.key, self.kind, self.title, self.unit, self.times = key, kind, title, unit, times
+        self.keys = keys or (key,)
         self.name = WRONG + key
         self.equations = f"{key} times the factor"
-        most = RULES.wrong_most
+        most = RULES.wrong_most if times == 1.0 else NEAR_UNIT
         self.parameters = (
-            Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE),
+            Parameter(f"{key}_factor", "-", times / most, times * most, "log", times, _SOURCE),
         )  # fmt: skip
 
     @property
@@ -97,6 +108,8 @@ class WrongNumber(Mechanism):
 
     def slip(self, low: float, high: float) -> str:
         """Return the usual slip that gives a factor within an interval, or ""."""
+        if self.times != 1.0:
+            return "another unit, by a power of ten"
         found = (words for kind, factor, words in _SLIPS
                  if kind == self.kind and low <= factor <= high)  # fmt: skip
         return next(found, "")
@@ -162,7 +175,7 @@ class WrongAngle(WrongNumber):
 
 def contradicting(strikers: Mapping[str, StrikerTable]) -> frozenset[str]:
     """Return keys of masses and radii that contradict a ball's density, and could be so far off."""
-    found = set()
+    found: set[str] = set()
     for name, ball in strikers.items():
         mass = geometric_mass(ball)
         if mass is None or ball.shape == "rod":
@@ -172,6 +185,9 @@ def contradicting(strikers: Mapping[str, StrikerTable]) -> frozenset[str]:
             powers = ("mass_kg", 1), ("tip_radius_m", 3)
             could = (key for key, n in powers if off / n < math.log(RULES.wrong_most))
             found |= {f"strikers.{name}.{key}" for key in could}
+    for key in ("mass_kg", "tip_radius_m") if len(strikers) > 1 else ():
+        if found.issuperset(f"strikers.{name}.{key}" for name in strikers):
+            found.add(f"strikers.{key}")
     return frozenset(found)
 
 
@@ -183,19 +199,21 @@ def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:
 def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict[str, float]:
     """Return the factors on numbers of the rig, by key, of the explanations among mechanisms."""
     return {
-        m.key: constants[m.name][m.parameters[0].name]
+        key: constants[m.name][m.parameters[0].name]
         for m in mechanisms
         if type(m) is WrongNumber
-    }  # fmt: skip
+        for key in m.keys
+    }
 
 
 def wrong_numbers(
-    known: Collection[str],
+    known: frozenset[str],
     strikers: Sequence[str],
     observed: Sequence[str],
     *,
     fallen: float,
     oblique: bool,
+    misread: Mapping[str, float],
 ) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
 
@@ -203,15 +221,23 @@ def wrong_numbers(
     - `strikers`, `observed`: what strikes, and what was read.
     - `fallen`: largest radius of what falls from a stated height [m]; 0 where none does.
     - `oblique`: whether a rod leans, or a ball's path.
+    - `misread`: key to the power of ten by which it is off.
     """
     tables = {"target": ("the flat", _OF_TARGET)}
     tables |= {f"strikers.{s}": (f"striker {s}", _OF_STRIKER) for s in strikers}
     for table, (body, words) in tables.items():
         for word, (kind, unit) in words.items():
             if (key := f"{table}.{word}") in known:
-                yield WrongNumber(key, kind, f"the stated {kind} of {body} is wrong", unit)
-    if "speed.scale" in known:
-        yield WrongNumber("speed.scale", "speed", "all speeds of approach are off by one factor")
+                title, times = f"the stated {kind} of {body} is wrong", misread.get(key, 1.0)
+                yield WrongNumber(key, kind, title, unit, times=times)
+    for word in ("mass_kg", "tip_radius_m") if len(strikers) > 1 else ():
+        if known.issuperset(keys := tuple(f"strikers.{s}.{word}" for s in strikers)):
+            kind, title = _OF_STRIKER[word][0], "the stated {} of every striker is wrong"
+            key, times = f"strikers.{word}", misread.get(f"strikers.{word}", 1.0)
+            yield WrongNumber(key, kind, title.format(kind), times=times, keys=keys)
+    if SPEED in known:
+        title, times = "all speeds of approach are off by one factor", misread.get(SPEED, 1.0)
+        yield WrongNumber(SPEED, "speed", title, times=times)
     if "friction.coefficient" in known:
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
@@ -220,4 +246,4 @@ def wrong_numbers(
         yield WrongAngle()
     for name in observed if len(observed) > 1 else ():
         title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
-        yield WrongReading(name, "reading", title)
+        yield WrongReading(name, "reading", title, times=misread.get(name, 1.0))

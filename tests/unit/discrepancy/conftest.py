@@ -74,6 +74,7 @@ class Problem:
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     wrong_numbers: tuple[Any, ...] = ()
     contradicted: frozenset[str] = frozenset()
+    misread: dict[str, float] = field(default_factory=dict)
     assumed: tuple[Any, ...] = ()
     nuisances: tuple[Any, ...] = ()
     bench: Bench = field(default_factory=Bench)

@@ -32,7 +32,7 @@ def test_priors_add_to_one_and_a_wrong_number_is_as_probable_as_physics() -> Non
 def test_a_scatter_was_varied_or_its_noise_misjudged(times) -> None:
     """Even up to e^5 in ln: 1/5; a noise misjudged by 0.5 in ln is twice `times` deviations off."""
     scatter = Scatter("restitution", math.exp(times), 9)
-    given = SimpleNamespace(drifts=(), followed=(), scatters=(scatter,))
+    given = SimpleNamespace(drifts=(), followed=(), scatters=(scatter,), misread={})
     misjudged = math.exp(-2.0 * times**2) / (0.5 * math.sqrt(2.0 * math.pi))
     assert odd_repeats(given) == pytest.approx(math.log(0.2 / misjudged))
 

@@ -64,17 +64,62 @@ def test_what_contradicts_the_density_is_what_could_be_so_far_off(tmp_path, time
     assert found.contradicted == {f"strikers.ball.{key}" for key in wrong}
 
 
-def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> None:
-    """Readings of a ball of 5 mm, on a sheet that says 10 mm."""
+def measured(
+    radius: float = 5e-3, *, striker: str = "ball", height_off: float = 1.0, dent_off: float = 1.0
+) -> str:
+    """Readings of a ball, of 5 mm, in units off by a factor."""
     ball, flat = (
         ds.Material(E=E, nu=0.3, Sy=Sy, density=rho)
         for E, Sy, rho in ((2.08e11, 1.7e9, 7800), (2.1e11, 3e8, 7850))
     )
-    pair, rows = ds.Pair(ball, flat, 5e-3), ""
+    pair, rows = ds.Pair(ball, flat, radius), ""
     for k, height in enumerate((0.1, 0.2, 0.4, 0.7, 1.1, 1.6)):
-        blow = ds.impact(pair, mass=TRUE, speed=math.sqrt(2.0 * 9.81 * height))["fitted"]
-        dent = 2.0 * float(ds.LAWS["fitted"].contact_radius(pair, blow.peak_depth_m))
-        rows += f"{k},ball,90,{height},{blow.restitution:.4f},{dent:.4e}\n"
+        blow = ds.impact(
+            pair, mass=TRUE * (radius / 5e-3) ** 3, speed=math.sqrt(2.0 * 9.81 * height)
+        )["fitted"]
+        dent = 2.0 * float(ds.LAWS["fitted"].contact_radius(pair, blow.peak_depth_m)) * dent_off
+        rows += (
+            f"{striker}{k},{striker},90,{height * height_off},{blow.restitution:.4f},{dent:.4e}\n"
+        )
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("off", "mass", "key", "times"),
+    [
+        ({"dent_off": 1e-3}, "", "dent_diameter_m", 1e-3),
+        ({"height_off": 0.01}, "", "speed.scale", 10.0),
+        ({}, str(1e3 * TRUE), "strikers.ball.mass_kg", 1e-3),
+    ],
+)
+def test_a_unit_is_the_finding_not_physics(tmp_path, off, mass, key, times) -> None:
+    verdict = ds.diagnose(written(tmp_path, mass=mass, rows=measured(**off))).verdict
+    (wrong,) = verdict.wrong_inputs
+    assert wrong.number.key == key
+    assert wrong.probability > 0.5
+    assert wrong.low < times < wrong.high
+    assert verdict.mechanisms == ()
+    assert "another unit, by a power of ten" in story_of(verdict).finding
+
+
+def test_one_slip_in_all_strikers_is_one_number(tmp_path) -> None:
+    """Two balls of 5 and 3 mm, weighed; diameters stand for both radii."""
+    rows = measured() + measured(3e-3, striker="small")
+    folder = written(tmp_path, radius=0.01, mass=str(TRUE), rows=rows)
+    text = (folder / "set.toml").read_text()
+    ball = text[text.index("[strikers.ball]") : text.index("[noise]")]
+    small = ball.replace(".ball]", ".small]").replace("value = 0.01", "value = 0.006")
+    small = small.replace(str(TRUE), str(TRUE * 0.6**3))
+    (folder / "set.toml").write_text(text.replace("[noise]", f"{small}[noise]"))
+    (wrong,) = ds.diagnose(folder).verdict.wrong_inputs
+    assert wrong.number.key == "strikers.tip_radius_m"
+    assert wrong.low < 0.5 < wrong.high
+    assert wrong.would_be is None
+
+
+def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> None:
+    """Readings of a ball of 5 mm, on a sheet that says 10 mm."""
+    rows = measured()
     for mass, sure in (("", 0.5), (str(TRUE), 0.9)):
         verdict = ds.diagnose(written(tmp_path, radius=0.01, mass=mass, rows=rows)).verdict
         (wrong,) = verdict.wrong_inputs
