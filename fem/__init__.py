@@ -13,6 +13,7 @@ from .results.uncertainty import (
     MESH_ERRORS_FORMAT,
     CurveUncertainty,
     discretisation_uncertainty,
+    strengths_of,
 )
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .solve import solve
@@ -33,4 +34,5 @@ __all__ = [
     "discretisation_uncertainty",
     "geometric_depths",
     "solve",
+    "strengths_of",
 ]

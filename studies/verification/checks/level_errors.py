@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,10 @@ import numpy as np
 from .... import fem
 from ....campaigns.case import Case
 from ....campaigns.cases.hardening import validation_hardening
+from ....campaigns.cases.pairs import table_2_1
 from ....core.arrays import Array
 from ....core.output import write_file
-from ..bench import Bench, Effort, Solved
+from ..bench import Bench, Solved
 from ..result import Cell, Measurement, Result, Table
 from . import convergence
 
@@ -26,6 +28,11 @@ _DEEPEST, _DEPTHS = 0.1, 48
 _UNITS = np.array([0.01, 0.01, 1.0, 0.01])  # of `convergence.curves`
 _COLUMNS = ("force", "radius", "sphere_share", "hardness")
 _COVERED = (("one", 0.62, 1.0), ("two", 0.92, 1.0))
+_PAIRS = (
+    (1, 1.0), (5, 10.0), (2, 1.3), (1, 0.7), (5, 1.5), (3, 1.15), (4, 0.85),
+    (4, 10.0), (2, 0.1), (3, 1.0), (1, 10.0), (1, 0.1), (5, 1.0), (2, 10.0), (4, 0.1),
+    (2, 1.0), (3, 10.0), (5, 0.1), (4, 1.0),
+)  # cases of Table 2.1 and Sy*, those that say most first  # fmt: skip
 _HARDENING = (3, 11)  # of `validation_hardening`
 
 
@@ -33,34 +40,76 @@ _HARDENING = (3, 11)  # of `validation_hardening`
 class Off:
     """How far one solve is off along its depths.
 
-    `name`: of its pair; `equal`: whether the two bodies are equally strong; `w`: delta/delta_c,
-    shape (n,); `error`: of ln F, ln a, the share and ln H, shape (4, n).
+    `name`: of its pair; `strengths`: as `fem.strengths_of` has them; `w`: delta/delta_c, shape
+    (n,); `error`: of ln F, ln a, the share and ln H, shape (4, n).
     """
 
     name: str
-    equal: bool
+    strengths: str
     w: Array
     error: Array
 
 
 def run(bench: Bench) -> Result:
-    """Compare the levels over Table 2.1 and write the table that the solver states."""
-    plan = convergence.plan_of(Effort.PRODUCTION)
-    levels = (fem.Accuracy.quick(), fem.Accuracy.smoke())
-    found: dict[str, list[Off]] = {level.level: [] for level in (plan.base, *levels)}
-    for number, ratio in convergence.ordered_cases():
-        base, *others = (
-            bench.solve(convergence.case_of(number, ratio, plan=plan, accuracy=accuracy))
-            for accuracy in (plan.base, plan.coarser, plan.bulkier, plan.bolder)
-        )
-        own = _own(base, others, f"{number}, {ratio:g}", equal=ratio == 1.0)
-        found["production"].append(own)
+    """Compare the levels with finer solves and write the table that the solver states."""
+    base, *levels = (fem.Accuracy.production(), fem.Accuracy.quick(), fem.Accuracy.smoke())
+    trios = [_trio(bench, base, number, ratio) for number, ratio in _PAIRS]
+    left = _left(trios)
+    found: dict[str, list[Off]] = {level.level: [] for level in (base, *levels)}
+    for (number, ratio), (_, solved, finer) in zip(_PAIRS, trios, strict=True):
+        own = _own(solved, finer, left, f"{number}, {ratio:g}")
+        found[base.level].append(own)
         for level in levels:
-            found[level.level].append(_against(bench.solve(_as_asked(base, level)), base, own))
-    table = {level: _table(offs) for level, offs in found.items()}
+            found[level.level].append(_against(bench.solve(_as_asked(solved, level)), solved, own))
+    table = {level: _tables(offs) for level, offs in found.items()}
+    for least, rows in pairwise(table.values()):  # the coarser level was seen at fewer depths
+        rows |= {name: np.maximum(least[name], row) for name, row in rows.items()}
     _write(table)
     hardening = [_hardening(bench, k, table["quick"]) for k in _HARDENING]
     return _result(found, table, hardening)
+
+
+def _trio(bench: Bench, base: fem.Accuracy, number: int, ratio: float) -> tuple[Solved, ...]:
+    """A pair of Table 2.1 with elements and steps twice as large, as they are, and half of it."""
+    pair = table_2_1(number, ratio)
+    first = 0.3 * pair.first_yield
+    steps = int(np.ceil(np.log(_DEEPEST / first) / np.log(base.step_ratio**2)))
+    return tuple(
+        bench.solve(
+            Case(
+                f"levels-{number}-Sy*-{ratio:g}",
+                fem.ContactProblem(pair, fem.geometric_depths(first, _DEEPEST, n * steps + 1)),
+                _scaled(base, factor),
+            )
+        )
+        for factor, n in ((2.0, 1), (1.0, 2), (0.5, 2))
+    )
+
+
+def _scaled(base: fem.Accuracy, factor: float) -> fem.Accuracy:
+    if factor == 1.0:
+        return base
+    return base.with_(
+        level=f"{base.level}, {factor:g} h",
+        fine=factor * base.fine,
+        coarse=factor * base.coarse,
+        divisions=2 * round(0.5 * base.divisions / factor),
+        step_ratio=base.step_ratio**factor,
+    )
+
+
+def _left(trios: list[tuple[Solved, ...]]) -> Array:
+    """What the finer solve has left of its difference: 1/(q - 1), q by which halving divided it.
+
+    Of all pairs together, shape (4,); first order leaves as much again, second order a third.
+    """
+    squares = np.zeros((2, 4))
+    for coarser, base, finer in trios:
+        delta = _common(coarser, base, finer)
+        for k, (other, own) in enumerate(((coarser, base), (base, finer))):
+            squares[k] += (_difference(other, own, delta) ** 2).mean(axis=1)
+    q = np.sqrt(squares[0] / squares[1])
+    return np.asarray(1.0 / (np.clip(q, 2.0, 4.0) - 1.0))
 
 
 def _as_asked(base: Solved, accuracy: fem.Accuracy) -> Case:
@@ -70,11 +119,11 @@ def _as_asked(base: Solved, accuracy: fem.Accuracy) -> Case:
     return Case("levels", fem.ContactProblem(base.pair, depths), accuracy)
 
 
-def _own(base: Solved, others: list[Solved], name: str, *, equal: bool) -> Off:
-    """Error of the finest level, by the differences that `convergence` combines."""
-    delta = _common(base, *others)
-    edge, bulk, step = (_difference(other, base, delta) for other in others)
-    return Off(name, equal, _over_onset(base, delta), convergence.combined(edge, bulk, step))
+def _own(base: Solved, finer: Solved, left: Array, name: str) -> Off:
+    """Error of the finest level: its difference from the finer solve and what that has left."""
+    delta = _common(base, finer)
+    error = _difference(base, finer, delta) * (1.0 + left)[:, None]
+    return Off(name, fem.strengths_of(base.pair), _over_onset(base, delta), error)
 
 
 def _against(solved: Solved, base: Solved, own: Off) -> Off:
@@ -104,11 +153,13 @@ def _difference(other: Solved, base: Solved, delta: Array) -> Array:
     return np.asarray(_UNITS[:, None] * (there - here))
 
 
-def _table(offs: Iterable[Off]) -> Array:
-    """Standard uncertainty at the knots, shape (4, n_knots): the worse of the two classes."""
+def _tables(offs: Iterable[Off]) -> dict[str, Array]:
+    """Standard uncertainty at the knots by strengths, each of shape (4, n_knots)."""
     offs = list(offs)
-    classes = [[off for off in offs if off.equal is kind] for kind in (True, False)]
-    return np.asarray(np.max([_rms(chosen) for chosen in classes if chosen], axis=0))
+    return {
+        strengths: _rms([off for off in offs if off.strengths == strengths])
+        for strengths in dict.fromkeys(off.strengths for off in offs)
+    }
 
 
 def _rms(offs: list[Off]) -> Array:
@@ -120,7 +171,7 @@ def _rms(offs: list[Off]) -> Array:
         near = (np.abs(x - knot) < _REACH) | (nearest == k)
         rows.append(np.sqrt(square[:, near].mean(axis=1)) if near.any() else np.full(4, np.nan))
     out = np.array(rows).T
-    for row in out:  # a class that never comes so deep keeps its last value
+    for row in out:  # pairs that never come so deep keep their last value
         known = np.isfinite(row)
         row[~known] = np.interp(_KNOTS[~known], _KNOTS[known], row[known])
     return out
@@ -134,12 +185,12 @@ def _covered(offs: list[Off], within: float) -> Array:
     """Share of depths within so many stated uncertainties of a table made without the case."""
     inside = []
     for k, off in enumerate(offs):
-        table = _table(offs[:k] + offs[k + 1 :])
+        table = _tables(offs[:k] + offs[k + 1 :])[off.strengths]
         inside.append((np.abs(off.error) <= within * _stated(table, off.w)).mean(axis=1))
     return np.asarray(np.mean(inside, axis=0))
 
 
-def _hardening(bench: Bench, k: int, table: Array) -> tuple[Cell, ...]:
+def _hardening(bench: Bench, k: int, tables: dict[str, Array]) -> tuple[Cell, ...]:
     """One pair that harden, `quick` against `production`: the table knows no hardening."""
     case = validation_hardening()[k]
     problem = replace(case.problem, unload_from=(), radius_at_least=0.0)
@@ -149,11 +200,12 @@ def _hardening(bench: Bench, k: int, table: Array) -> tuple[Cell, ...]:
     )
     delta = _common(rough, fine)
     error, w = _difference(rough, fine, delta), _over_onset(fine, delta)
-    pulls = np.sqrt(np.mean((error / _stated(table, w)) ** 2, axis=1))
+    stated = _stated(tables[fem.strengths_of(fine.pair)], w)
+    pulls = np.sqrt(np.mean((error / stated) ** 2, axis=1))
     return (case.name, *(round(float(pull), 2) for pull in pulls))
 
 
-def _write(table: dict[str, Array]) -> Path:
+def _write(table: dict[str, dict[str, Array]]) -> Path:
     content = {
         "format": fem.MESH_ERRORS_FORMAT,
         "numerics_version": fem.NUMERICS_VERSION,
@@ -162,17 +214,22 @@ def _write(table: dict[str, Array]) -> Path:
         "depth_over_first_yield": [float(f"{np.exp(x):.6g}") for x in _KNOTS],
         "levels": {
             level: {
-                name: [float(f"{value:.4g}") for value in row]
-                for name, row in zip(_COLUMNS, rows, strict=True)
+                strengths: {
+                    name: [float(f"{value:.4g}") for value in row]
+                    for name, row in zip(_COLUMNS, rows, strict=True)
+                }
+                for strengths, rows in tables.items()
             }
-            for level, rows in table.items()
+            for level, tables in table.items()
         },
     }
     return write_file(fem.MESH_ERRORS_FILE, json.dumps(content, indent=1) + "\n")
 
 
 def _result(
-    found: dict[str, list[Off]], table: dict[str, Array], hardening: list[tuple[Cell, ...]]
+    found: dict[str, list[Off]],
+    table: dict[str, dict[str, Array]],
+    hardening: list[tuple[Cell, ...]],
 ) -> Result:
     measurements = [
         Measurement(
@@ -184,27 +241,29 @@ def _result(
         for within, (name, low, high) in enumerate(_COVERED, start=1)
     ]  # fmt: skip
     rows: list[tuple[Cell, ...]] = [
-        (level, f"{np.exp(knot):.3g}",
+        (level, strengths, f"{np.exp(knot):.3g}",
          *(f"{100.0 * rows[i, k]:.2f}" for i in (0, 1)), f"{rows[2, k]:.4f}",
          f"{100.0 * rows[3, k]:.2f}")
-        for level, rows in table.items()
+        for level, tables in table.items()
+        for strengths, rows in tables.items()
         for k, knot in enumerate(_KNOTS)
     ]  # fmt: skip
     return Result(
         name="levels",
         title="What each level of accuracy states of itself",
         about=(
-            "Table 2.1 of the thesis at Sy* = 0.1, 1, 10, to Delta/R = 0.1. The error of "
-            "`production` is that of the check before, at each depth and with the ripple; that "
-            "of `quick` and `smoke` holds their difference from `production` too. A solve states "
-            "the rms over the pairs at its depth, of equally strong bodies or of the others, "
-            "whichever is larger."
+            "Nineteen pairs of Table 2.1 of the thesis at Sy* = 0.1 to 10, to Delta/R = 0.1. The "
+            "error of `production` is its difference from elements and steps half as large, at "
+            "each depth and with the ripple, and what that solve has left by the difference from "
+            "those twice as large; that of `quick` and `smoke` holds their difference from "
+            "`production` too. A solve states the rms over the pairs at its depth, nearly equally "
+            "strong (Sy* 0.7 to 1.5) or unlike."
         ),
         measurements=tuple(measurements),
         tables=(
             Table(
                 "Stated standard uncertainty",
-                ("level", "Delta/delta_c", "F [%]", "a [%]", "delta_s*", "H [%]"),
+                ("level", "strengths", "Delta/delta_c", "F [%]", "a [%]", "delta_s*", "H [%]"),
                 tuple(rows),
             ),
             Table(
