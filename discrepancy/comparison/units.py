@@ -48,13 +48,15 @@ def with_units(simulator: Simulator) -> Problem:
         for power in _OF_KIND.get(number.kind, ())
     }  # fmt: skip
     best = min(numbers, key=lambda x: numbers[x])
-    if numbers[best] < _LEFT * misfit(off):
-        return replace(problem, misread=dict([best]))
-    misread = {}
+    misread, read_right = {}, off.copy()
     for name, some in here.items():
         near = np.abs(off[some, None] - _POWERS * math.log(10.0)) < math.log(NEAR_UNIT)
         if near.mean(axis=0).max() > _MOST:
-            misread[name] = 10.0 ** float(_POWERS[int(near.mean(axis=0).argmax())])
+            power = float(_POWERS[int(near.mean(axis=0).argmax())])
+            misread[name] = 10.0**power
+            read_right[some] -= power * math.log(10.0)
+    if numbers[best] < min(_LEFT * misfit(off), misfit(read_right)):
+        return replace(problem, misread=dict([best]))
     less = [min(misread.get(name, 1.0), 1.0) for name in cells.observable]
     return replace(problem, misread=misread, cells=replace(cells, std=cells.std * np.array(less)))
 
