@@ -462,7 +462,8 @@ class DiagnosisRules:
         "tempers of one metal differ by 2, and no other number of a sheet is as rarely measured",
     )  # fmt: skip
     contradicted: float = rule(
-        50.0, "times that a mass or radius is wrong where it contradicts the density [-]",
+        50.0, "times that a mass or radius is wrong where it contradicts the density; a mass that "
+        "agrees is by this less [-]",
         "of fifty sheets one has the density of another ball, or a hollow one",
     )  # fmt: skip
     grid_places: tuple[tuple[int, int], ...] = rule(

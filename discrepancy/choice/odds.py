@@ -135,9 +135,9 @@ class Priors:
         """Return those of a ranking's explanations."""
         acting = (s.mechanism.name for s in ranking.screened if _acts(ranking, s))
         share = prior_shares([s.mechanism for s in ranking.screened])
-        for key in ranking.problem.contradicted:
+        for key, contradicted in ranking.problem.by_density.items():
             if (name := f"{WRONG}{key}") in share:
-                share[name] += math.log(RULES.contradicted)
+                share[name] += math.log(RULES.contradicted) * (1.0 if contradicted else -1.0)
         return cls(share, frozenset(acting))
 
     def log(self, names: Collection[str]) -> float:

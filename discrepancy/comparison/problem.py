@@ -29,7 +29,7 @@ from ..rules import RULES
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error
 from ..unknowns.nuisances import GAUGE, LOAD_SCALE, RIM_SCALE, Nuisance, nuisances_of
 from ..unknowns.repeats import Drift, Followed
-from ..unknowns.wrong_number import WrongNumber, contradicting, wrong_numbers
+from ..unknowns.wrong_number import WrongNumber, by_density, wrong_numbers
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
@@ -61,8 +61,8 @@ class Problem:
     """Whether diameters of dents were measured, so that the contact's radius matters."""
     bench: Bench = field(default_factory=Bench)
     """What can be done next."""
-    contradicted: frozenset[str] = frozenset()
-    """Keys of masses and radii that contradict a ball's density, and could be so far off."""
+    by_density: Mapping[str, bool] = field(default_factory=dict)
+    """Keys of masses and radii to whether a ball's density contradicts them."""
     misread: Mapping[str, float] = field(default_factory=dict)
     """Keys of what is off by a power of ten, and by which."""
 
@@ -266,7 +266,7 @@ def problem_of(
     problem = Problem(
         recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR, bench=setup.rig,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
-        contradicted=contradicting({c.striker: setup.strikers[c.striker] for c in conditions}),
+        by_density=by_density({c.striker: setup.strikers[c.striker] for c in conditions}),
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)

@@ -15,10 +15,10 @@ from .problem import Problem
 
 # limit: powers of ten of a unit [-]: um for m in readings
 _POWERS = np.array([*range(-6, 0), *range(1, 7)])
-# limit: and of numbers [-]: g for kg; heights go as the square of the speed; less is no more than
-# any wrong number is off
+# limit: and of numbers [-]: g or N for kg; heights go as the square of the speed; less is no more
+# than any wrong number is off
 _OF_KIND: Mapping[str, tuple[float, ...]] = {
-    "mass": (-3, -2, -1, 1, 2, 3), "radius": (-1, 1), "strength": (-1, 1), "modulus": (-1, 1),
+    "mass": (-3, -1, 1, 3), "radius": (-1, 1), "strength": (-1, 1), "modulus": (-1, 1),
     "speed": (-1.5, -1, 1, 1.5),
 }  # fmt: skip
 # limit: misfit from which units are looked for [-], and how much of it the right one leaves; share
@@ -44,7 +44,8 @@ def with_units(simulator: Simulator) -> Problem:
         return problem
     numbers = {
         (number.key, 10.0**power): misfit(_off(simulator, number, times=10.0**power))
-        for number in problem.wrong_numbers if type(number) is WrongNumber
+        for number in problem.wrong_numbers
+        if type(number) is WrongNumber and problem.by_density.get(number.key, True)
         for power in _OF_KIND.get(number.kind, ())
     }  # fmt: skip
     best = min(numbers, key=lambda x: numbers[x])

@@ -53,6 +53,7 @@ _SETTLED = {
     "friction": "a slope or a pull with a spring balance",
     "height": "a ruler from the flat to the ball's lowest point",
     "angle": "a square on the flat: 90 degrees is upright",
+    "power": "how they were worked out: the root of a ratio of heights is the restitution",
     "reading": "a gauge block, or the same mark by another instrument",
 }  # fmt: skip
 # limit: how far off a prediction is beside a power of ten [-]
@@ -76,8 +77,8 @@ class WrongNumber(Mechanism):
 
     - `key`, `unit`: of set.toml, as in the parameters of a verdict; the SI unit, "-" of what is a
       factor itself. `keys`: of every striker, where one slip is in all.
-    - `kind`: strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
-      kind share a prior.
+    - `kind`: strength, modulus, radius, mass, speed, friction, height, power or reading: numbers of
+      one kind share a prior.
     - `title`: as a clause.
     - `times`: a power of ten that it is off by beside a factor near 1, where nothing less would do.
     """
@@ -129,6 +130,26 @@ class WrongReading(WrongNumber):
         return {**seen, self.key: seen[self.key] * values[self.parameters[0].name]}
 
 
+class Squared(WrongNumber):
+    """Restitutions that are their squares: ratios of heights, or of energies."""
+
+    measure, told = "power", "To the power of {}"
+
+    def __init__(self) -> None:
+        super().__init__("restitution_power", "power", "all restitutions stand squared")
+        self.equations = "restitution to the power of p"
+        told = "2; heights are read to the ball's middle or its foot"
+        self.parameters = (
+            Parameter(self.key, "-", 1.9, 2.1, "linear", 1.0, told, nodes=3),
+        )  # fmt: skip
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Return the observables with the restitution to the power."""
+        return {**seen, "restitution": seen["restitution"] ** values[self.key]}
+
+
 class WrongHeight(WrongNumber):
     """All heights of fall off by one length: read to the ball's centre or top, or from a table."""
 
@@ -173,22 +194,28 @@ class WrongAngle(WrongNumber):
         return scene.with_(approach=scene.approach.inclined(angle))
 
 
-def contradicting(strikers: Mapping[str, StrikerTable]) -> frozenset[str]:
-    """Return keys of masses and radii that contradict a ball's density, and could be so far off."""
-    found: set[str] = set()
+def by_density(strikers: Mapping[str, StrikerTable]) -> dict[str, bool]:
+    """Return keys of masses and radii to whether the balls' densities contradict them.
+
+    Contradicted is what could be so far off; a mass that agrees (False) is not wrong by itself.
+    """
+    found: dict[str, bool] = {}
     for name, ball in strikers.items():
         mass = geometric_mass(ball)
         if mass is None or ball.shape == "rod":
             continue
         off = abs(math.log(ball.mass_kg.value / mass.low))
-        if off > 5.0 * math.hypot(_DENSITY, ball.mass_kg.relative, mass.relative):
-            powers = ("mass_kg", 1), ("tip_radius_m", 3)
-            could = (key for key, n in powers if off / n < math.log(RULES.wrong_most))
-            found |= {f"strikers.{name}.{key}" for key in could}
+        far = off > 5.0 * math.hypot(_DENSITY, ball.mass_kg.relative, mass.relative)
+        if not far:
+            found[f"strikers.{name}.mass_kg"] = False
+        for key, n in (("mass_kg", 1), ("tip_radius_m", 3)) if far else ():
+            if off / n < math.log(RULES.wrong_most):
+                found[f"strikers.{name}.{key}"] = True
     for key in ("mass_kg", "tip_radius_m") if len(strikers) > 1 else ():
-        if found.issuperset(f"strikers.{name}.{key}" for name in strikers):
-            found.add(f"strikers.{key}")
-    return frozenset(found)
+        of = [found.get(f"strikers.{name}.{key}") for name in strikers]
+        if None not in of and len(set(of)) == 1:
+            found[f"strikers.{key}"] = bool(of[0])
+    return found
 
 
 def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:
@@ -244,6 +271,8 @@ def wrong_numbers(
         yield WrongHeight(4.0 * fallen)
     if oblique:
         yield WrongAngle()
+    if "restitution" in observed:
+        yield Squared()
     for name in observed if len(observed) > 1 else ():
         title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
         yield WrongReading(name, "reading", title, times=misread.get(name, 1.0))

@@ -73,7 +73,7 @@ class Problem:
     baseline: str = "elastic-plastic"
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     wrong_numbers: tuple[Any, ...] = ()
-    contradicted: frozenset[str] = frozenset()
+    by_density: dict[str, bool] = field(default_factory=dict)
     misread: dict[str, float] = field(default_factory=dict)
     assumed: tuple[Any, ...] = ()
     nuisances: tuple[Any, ...] = ()

@@ -31,7 +31,7 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
     found = limits_of(
         SimpleNamespace(
             base=SimpleNamespace(linear=Linear(np.eye(1), np.zeros((1, 0)))),
-            problem=SimpleNamespace(n_nuisances=0, conditions=(), contradicted=()),
+            problem=SimpleNamespace(n_nuisances=0, conditions=(), by_density={}),
             screened=[
                 SimpleNamespace(
                     mechanism=SimpleNamespace(name="m", parameters=(None,)), grid=grid,

@@ -57,16 +57,22 @@ def test_of_a_ball_that_was_not_weighed_the_radius_moves_the_mass(tmp_path) -> N
 
 @pytest.mark.parametrize(
     ("times", "wrong"),
-    [(1.02, set()), (2.0, {"mass_kg", "tip_radius_m"}), (8.0, {"tip_radius_m"}), (100.0, set())],
+    [
+        (1.02, {"mass_kg": False}),
+        (2.0, {"mass_kg": True, "tip_radius_m": True}),
+        (8.0, {"tip_radius_m": True}),
+        (100.0, {}),
+    ],
 )
 def test_what_contradicts_the_density_is_what_could_be_so_far_off(tmp_path, times, wrong) -> None:
     found = problem(tmp_path, mass=str(TRUE * times))
-    assert found.contradicted == {f"strikers.ball.{key}" for key in wrong}
+    assert found.by_density == {f"strikers.ball.{key}": is_so for key, is_so in wrong.items()}
 
 
 def measured(
-    radius: float = 5e-3, *, striker: str = "ball", height_off: float = 1.0, dent_off: float = 1.0
-) -> str:
+    radius: float = 5e-3, *, striker: str = "ball", height_off: float = 1.0, dent_off: float = 1.0,
+    power: float = 1.0,
+) -> str:  # fmt: skip
     """Readings of a ball, of 5 mm, in units off by a factor."""
     ball, flat = (
         ds.Material(E=E, nu=0.3, Sy=Sy, density=rho)
@@ -78,9 +84,8 @@ def measured(
             pair, mass=TRUE * (radius / 5e-3) ** 3, speed=math.sqrt(2.0 * 9.81 * height)
         )["fitted"]
         dent = 2.0 * float(ds.LAWS["fitted"].contact_radius(pair, blow.peak_depth_m)) * dent_off
-        rows += (
-            f"{striker}{k},{striker},90,{height * height_off},{blow.restitution:.4f},{dent:.4e}\n"
-        )
+        rows += f"{striker}{k},{striker},90,{height * height_off},"
+        rows += f"{blow.restitution**power:.4f},{dent:.4e}\n"
     return rows
 
 
@@ -89,6 +94,7 @@ def measured(
     [
         ({"dent_off": 1e-3}, "", "dent_diameter_m", 1e-3),
         ({"height_off": 0.01}, "", "speed.scale", 10.0),
+        ({"height_off": 100.0}, str(TRUE), "speed.scale", 0.1),
         ({}, str(1e3 * TRUE), "strikers.ball.mass_kg", 1e-3),
     ],
 )
@@ -100,6 +106,13 @@ def test_a_unit_is_the_finding_not_physics(tmp_path, off, mass, key, times) -> N
     assert wrong.low < times < wrong.high
     assert verdict.mechanisms == ()
     assert "another unit, by a power of ten" in story_of(verdict).finding
+
+
+def test_ratios_of_heights_are_squared_restitutions(tmp_path) -> None:
+    (wrong,) = ds.diagnose(written(tmp_path, rows=measured(power=2.0))).verdict.wrong_inputs
+    assert wrong.number.key == "restitution_power"
+    assert wrong.probability > 0.5
+    assert wrong.low < 2.0 < wrong.high
 
 
 def test_one_slip_in_all_strikers_is_one_number(tmp_path) -> None:
