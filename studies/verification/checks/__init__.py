@@ -67,10 +67,8 @@ CHECKS: tuple[Check, ...] = (
         "convergence",
         "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10",
         "convergence.run",
-        "What is left of a goes with the edge's elements; what is left of F with the step: with "
-        "ever shorter ones F of plastic contacts rises by up to 0.9 % (first order, most at 400 to "
-        "1400 times the depth of first yield), a by 0.2 %; half the elements change F by 0.2 %. "
-        "Both halved cost seven times as much.",
+        "With ever shorter steps F of plastic contacts rises by up to 0.9 % (first order), a by "
+        "0.2 %; half the elements change either by 0.2 %. Both together cost seven times as much.",
     ),
     Check(
         "levels",
