@@ -66,6 +66,8 @@ _SLIPS = (
     ("strength", 1.9, "another temper of the metal: cold-drawn for hot-rolled"),
     ("strength", 1.0 / 1.9, "another temper of the metal: hot-rolled for cold-drawn"),
     ("speed", 0.5, "half of the speed"),
+    ("speed", 1.0 / 3.6, "km/h stand for m/s"),
+    ("speed", 0.447, "miles an hour stand for m/s"),
     ("reading", 2.0, "half of the reading, as a radius for a diameter"),
     ("reading", 0.5, "twice the reading, as a diameter for a radius"),
 )  # fmt: skip
