@@ -29,9 +29,6 @@ def diagnose(
     ] = None,
     out: Annotated[Path | None, folder_option("Folder for verdict.json and report.html.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same answer.")] = 0,
-    confirm: Annotated[
-        bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
-    ] = False,
     law: Annotated[
         Literal["fitted", "table"] | None,
         typer.Option(help="Fitted, or the own pair solved; else solved if it has a flow curve."),
@@ -73,9 +70,8 @@ def diagnose(
     if not quiet:
         tell_first_use()
     verdict = run(
-        recordings, seed=seed, confirm=confirm, law=law, cautious=cautious, assume=assume or (),
-        progress=show,
-    )  # fmt: skip
+        recordings, seed=seed, law=law, cautious=cautious, assume=assume or (), progress=show
+    )
     show("")
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
     written = [write_file(out / "verdict.json", text + "\n")]

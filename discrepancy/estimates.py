@@ -46,20 +46,17 @@ def finite(x: float) -> float | None:
 
 
 def scores_of(
-    ranking: Ranking,
-    p: Mapping[str, float],
-    left_out: Mapping[str, HeldOut],
-    sampled: Mapping[str, float],
+    ranking: Ranking, p: Mapping[str, float], left_out: Mapping[str, HeldOut]
 ) -> dict[str, dict[str, float]]:
     """Return evidence over the baseline, held-out miss, p of fit and chi2 of every explanation.
 
     `p`, `left_out`: for each fit by name, how it passes the test of fit and predicts left-out
-    conditions; `sampled`: sampled ln evidence over the baseline, of those that were sampled.
+    conditions.
     """
     base = ranking.base.log_evidence
     return {
         f.name: {
-            "evidence": sampled.get(f.name, f.log_evidence - base),
+            "evidence": f.log_evidence - base,
             "held_out": left_out[f.name].rms,
             "p_value": p[f.name],
             "chi2": f.chi2,

@@ -403,15 +403,6 @@ class DiagnosisRules:
         500, "null sets that set the thresholds of a screening [-]",
         "probabilities of 0.002 are told",
     )  # fmt: skip
-    confirmed_nulls: int = rule(
-        2000, "the same with `confirm` [-]",
-        "a level of 0.05 to a tenth",
-    )  # fmt: skip
-    sample_step: float = rule(0.5, "width of a move over that of the particles [-]")
-    sample_left: float = rule(
-        0.5, "part of the particles that still count after a step of temperature [-]",
-        "usual in sequential Monte Carlo (Del Moral and others 2006)",
-    )  # fmt: skip
     null_level: float = rule(
         1.0, "standard deviation of a null law's level over the law's error [-]"
     )

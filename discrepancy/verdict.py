@@ -31,7 +31,6 @@ from .correction import correct
 from .experiments.next_experiment import propose
 from .findings import After, Verdict
 from .heldout import held_out
-from .inference.sampling import confirm_evidence
 from .locate import locate
 from .rank import Ranking, rank
 from .rules import RULES
@@ -66,7 +65,6 @@ def diagnose(
     recordings: RecordingSet,
     *,
     seed: int = 0,
-    confirm: bool = False,
     law: LawChoice | None = None,
     cautious: bool = False,
     assume: Sequence[str] = (),
@@ -77,7 +75,7 @@ def diagnose(
     """Say what physics is missing in the simulation of a recording set.
 
     - `recordings`: from `recordings.read`.
-    - `seed`, `confirm`, `law`, `cautious`, `assume`, `mechanisms`: as `dentscope.diagnose` takes
+    - `seed`, `law`, `cautious`, `assume`, `mechanisms`: as `dentscope.diagnose` takes
       and explains them.
     - `history`: whether what was known before each later session of the set is worked out too.
 
@@ -92,20 +90,13 @@ def diagnose(
     own = own_mechanisms(mechanisms)
     progress("auditing the inputs")
     asked = _Asked(recordings, estimates.audit_rows(recordings), own, seed, rng, progress)
-    chosen = law or ("table" if confirm else None)
-    simulator = Simulator(problem_of(recordings, law=chosen, assume=assume, progress=progress))
-    found = _explained(asked, simulator, nulls=RULES.confirmed_nulls if confirm else RULES.nulls)
+    simulator = Simulator(problem_of(recordings, law=law, assume=assume, progress=progress))
+    found = _explained(asked, simulator)
     progress("deciding")
-    sampled: dict[str, float] = {}
-    choice, odds = _decided(found, sampled, cautious)
-    if confirm:
-        leading = [found.ranking.base, *choice.members]
-        sampled = confirm_evidence(found.simulator, leading, rng, progress)
-        choice, odds = _decided(found, sampled, cautious)
-    verdict = _told(asked, found, choice, odds, sampled)
+    verdict = _told(asked, found, *_decided(found, cautious=cautious))
     if not history or not np.ptp(recordings.trials.sessions):
         return verdict
-    return replace(verdict, history=_history(asked, verdict, chosen, assume))
+    return replace(verdict, history=_history(asked, verdict, law, assume))
 
 
 def _history(
@@ -118,20 +109,18 @@ def _history(
         asked.progress(f"what was known after session {session:g}")
         part = asked.recordings.take(sessions <= session)
         simulator = Simulator(problem_of(part, law=law, assume=assume))
-        earlier = _explained(asked, simulator, nulls=RULES.nulls)
-        _, odds = _decided(earlier, {}, cautious=False)
+        _, odds = _decided(_explained(asked, simulator), cautious=False)
         found.append(After(session, len(part.trials), dict(odds.probability)))
     return (*found, After(float(sessions.max()), len(sessions), verdict.probabilities))
 
 
-def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> tuple[Choice, Odds]:
-    """`sampled`: ln evidences of the leading explanations where they were sampled."""
+def _decided(found: _Explained, *, cautious: bool) -> tuple[Choice, Odds]:
     beside = {name: one.log_odds for name, one in found.tests.items()}
-    odds = odds_of(found.ranking, sampled=sampled, beside=beside)
+    odds = odds_of(found.ranking, beside=beside)
     return decide(found.ranking, odds, cautious=cautious), odds
 
 
-def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained:
+def _explained(asked: _Asked, simulator: Simulator) -> _Explained:
     """Fit the baseline, every wrong number and mechanism, and the pairs that gain by it."""
     simulator = simulator.of(with_units(simulator))
     library = (*MECHANISMS, *NAMELESS, *asked.own, *simulator.problem.wrong_numbers)
@@ -139,14 +128,12 @@ def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained
     simulator = simulator.of(ranking.problem)
     ranking = with_pairs(simulator, ranking, progress=asked.progress)
     asked.progress("simulating sets in which nothing is missing")
-    residuals = null_residuals(simulator, ranking.base, nulls, asked.rng)
+    residuals = null_residuals(simulator, ranking.base, RULES.nulls, asked.rng)
     tests = {f.name: fit_test(f, residuals) for f in ranking.fits}
     return _Explained(simulator, ranking, residuals, tests)
 
 
-def _told(
-    asked: _Asked, found: _Explained, choice: Choice, odds: Odds, sampled: dict[str, float]
-) -> Verdict:
+def _told(asked: _Asked, found: _Explained, choice: Choice, odds: Odds) -> Verdict:
     """Locate the mismatch, predict what was left out, propose, and say it all."""
     simulator, ranking, nulls, tests = found
     problem, base = ranking.problem, ranking.base
@@ -163,7 +150,7 @@ def _told(
     return Verdict(
         name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
-        scores=estimates.scores_of(ranking, p_values, left_out, sampled),
+        scores=estimates.scores_of(ranking, p_values, left_out),
         located=locate(problem, base, nulls, least=misses),
         parameters=estimates.parameters_of(simulator, best),
         nuisance_pulls={n.name: float(best.z[i]) for i, n in enumerate(problem.nuisances)},

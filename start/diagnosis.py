@@ -94,7 +94,6 @@ def diagnose(
     folder: str | Path,
     *,
     seed: int = 0,
-    confirm: bool = False,
     law: LawChoice | None = None,
     cautious: bool = False,
     assume: Sequence[str] = (),
@@ -111,12 +110,9 @@ def diagnose(
         A folder with set.toml and trials.csv, or the name of a shipped set.
     seed
         Same seed, same answer.
-    confirm
-        Also sample the evidence, use the full ensemble of sets with nothing missing, and solve the
-        set's own pair by finite elements.
     law
         `fitted`, or `table` for finite elements of the set's own pair. Left out: `table` where a
-        body has a flow curve, with `confirm`, or where the set asks for it.
+        body has a flow curve, or where the set asks for it.
     cautious
         Say only what has four fifths of the probability, not half.
     assume
@@ -132,7 +128,7 @@ def diagnose(
     """
     place = path_of(folder, key="folder", allowed="a recording set")
     verdict = verdict_of(
-        read(set_folder(place)), seed=seed, confirm=confirm, law=law, cautious=cautious,
+        read(set_folder(place)), seed=seed, law=law, cautious=cautious,
         assume=[assume] if isinstance(assume, str) else assume, mechanisms=mechanisms,
     )  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

@@ -58,20 +58,15 @@ class Odds:
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
-def odds_of(
-    ranking: Ranking, *, sampled: Mapping[str, float] | None = None,
-    beside: Mapping[str, float] | None = None,
-) -> Odds:  # fmt: skip
+def odds_of(ranking: Ranking, *, beside: Mapping[str, float] | None = None) -> Odds:
     """Return the probabilities of a ranking's explanations.
 
     A mechanism without a full fit counts by its screening.
 
-    - `sampled`: sampled ln evidence over the baseline, of the explanations that have it.
     - `beside`: ln Bayes factor of something that acts beside each fit, by how that fits: what a fit
       that is bad loses by it, and what something outside has for each.
     """
     gained = gains(ranking)
-    gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
     prior = Priors.of(ranking)
     names: dict[str, tuple[str, ...]] = {BASELINE: (), OUTSIDE: ()}
     log = {}

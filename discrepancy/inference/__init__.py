@@ -1,1 +1,1 @@
-"""What explains the cells: linear algebra, grid, derivatives, fit, window, sampling, outliers."""
+"""What explains the cells: linear algebra, grid, derivatives, fit, window, outliers."""

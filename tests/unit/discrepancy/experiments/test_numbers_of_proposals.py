@@ -22,7 +22,6 @@ from dentscope.discrepancy.experiments.next_experiment import (
     rivals_of,
 )
 from dentscope.discrepancy.experiments.session import Proposal, Session
-from dentscope.discrepancy.inference.sampling import _next_step
 from dentscope.discrepancy.metal.estimate import rate_prior
 from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
 from dentscope.discrepancy.unknowns.lawerror import components
@@ -153,33 +152,22 @@ def test_twelve_draws_stand_for_a_rivals_parameters_and_256_for_the_noise(toy) -
     assert _spread_out(2).shape == (256, 2)
 
 
-def test_a_step_of_temperature_leaves_half_of_the_particles() -> None:
-    """Half of them e^-x less likely: (1 + e^-x)^2/(2 (1 + e^-2x)) of them count."""
-    n = 10000
-    log_ratio = np.where(np.arange(n) < n // 10, 0.0, -50.0)
-    step = _next_step(log_ratio, 1.0)
-    w = math.exp(-50.0 * step)
-    part = (0.1 + 0.9 * w) ** 2 / (0.1 + 0.9 * w * w)
-    assert part == pytest.approx(0.5, abs=1e-6)
-
-
-def test_a_verdict_draws_500_nulls_and_2000_to_confirm(monkeypatch) -> None:
-    asked = []
-
-    class Enough(Exception):
+def test_a_verdict_draws_500_sets_in_which_nothing_is_missing(monkeypatch) -> None:
+    class Asked(Exception):
         pass
 
-    def explained(given, simulator, *, nulls):
-        asked.append(nulls)
-        raise Enough
+    def drawn(simulator, base, count, rng):
+        raise Asked(count)
 
-    monkeypatch.setattr(verdict, "_explained", explained)
-    monkeypatch.setattr(verdict.estimates, "audit_rows", lambda r: ())
-    monkeypatch.setattr(verdict, "problem_of", lambda r, **more: None)
-    for confirm in (False, True):
-        with pytest.raises(Enough):
-            verdict.diagnose(None, confirm=confirm)
-    assert asked == [500, 2000]
+    ranked = SimpleNamespace(problem=None, base=None)
+    given = SimpleNamespace(problem=SimpleNamespace(wrong_numbers=()), of=lambda problem: given)
+    asked = SimpleNamespace(own=(), progress=lambda told: None, rng=None)
+    for name in ("rank", "with_pairs"):
+        monkeypatch.setattr(verdict, name, lambda *given, **more: ranked)
+    monkeypatch.setattr(verdict, "with_units", lambda simulator: None)
+    monkeypatch.setattr(verdict, "null_residuals", drawn)
+    with pytest.raises(Asked, match="500"):
+        verdict._explained(asked, given)
 
 
 def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:
