@@ -51,10 +51,6 @@ class DiagnosisRules:
         3, "trials from which a column may be called derived [-]",
         "by chance one in a hundred of three agrees so well",
     )  # fmt: skip
-    mesh_share: float = rule(
-        0.25, "error of the mesh in the metal's own error in force [-]",
-        "added in squares it is 3 %",
-    )  # fmt: skip
     solve_deeper: float = rule(
         1.3, "depth of the solve over the deepest impact [-]",
         "room for a stated number that is off",

@@ -21,7 +21,6 @@ from ...models.anchored import anchored
 from ...models.base import ContactLaw, remembering
 from ...models.fitted import ClosedForm
 from ...models.table import table_law
-from ...models.uncertainty import METAL, WITH_CURVE
 from ...recordings import RecordingSet
 from .solve import solved_pair
 
@@ -99,10 +98,7 @@ def laws_of(
             law = _anchored(plain, LAWS["hardening"], metal, stated)
         if solve:
             reached = [d for name in names for d in depths[name]]
-            known = METAL if metal.perfectly_plastic else WITH_CURVE
-            table, told = solved_pair(
-                recordings.name, metal, reached, progress, metal_error=known["force"]
-            )
+            table, told = solved_pair(recordings.name, metal, reached, progress)
             notes += told
             if table is not None:
                 one = table_law([table], name="finite elements of the pair")

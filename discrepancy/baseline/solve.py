@@ -27,20 +27,16 @@ _SOLVING = "solving the set's own pair by finite elements, kept for the next tim
 
 
 def solved_pair(
-    name: str, pair: Pair, depths: Sequence[float], progress: Callable[[str], None], *,
-    metal_error: float,
-) -> tuple[PairTable | None, tuple[str, ...]]:  # fmt: skip
+    name: str, pair: Pair, depths: Sequence[float], progress: Callable[[str], None]
+) -> tuple[PairTable | None, tuple[str, ...]]:
     """Return the table of a pair, and why there is none where it could not be made.
 
     - `name`: of the set, for the notes.
     - `pair`: the bodies, with their flow curves; the radius does not matter.
     - `depths`: Delta/R of the peaks of the impacts.
-    - `metal_error`: relative standard deviation of the force, of the metal to what is solved; the
-      level of accuracy is the coarsest that is off by less than a quarter of it.
     """
     low, high = (_rounded(d, math.ceil) for d in (min(depths), max(depths)))
-    level = _level(pair, high, metal_error)
-    path = cache_folder("pairs") / f"{_digest(pair, low, high, level)}.json"
+    path = cache_folder("pairs") / f"{_digest(pair, low, high)}.json"
     if path.exists():
         try:
             return replace(read_table(path).tables[0], pair=pair), ()
@@ -48,26 +44,19 @@ def solved_pair(
             path.unlink()
     progress(_SOLVING)
     try:
-        table = solved_table(pair, low, high, level=level, progress=progress)
+        table = solved_table(pair, low, high, progress=progress)
     except InputError as error:
         return None, (f"the pair of {name} was not solved by finite elements: {error}",)
     write_table(table, path)
     return table, ()
 
 
-def _level(pair: Pair, high: float, metal_error: float) -> str:
-    """The coarsest level whose stated error of the force is small beside the metal's."""
-    from ...fem.results.uncertainty import largest_force_error
-
-    off = largest_force_error("quick", pair, RULES.solve_deeper * high)
-    return "quick" if off <= RULES.mesh_share * metal_error else "production"
-
-
 def solved_table(
-    pair: Pair, low: float, high: float, *, level: str,
-    progress: Callable[[str], None] = lambda _: None,
-) -> PairTable:  # fmt: skip
+    pair: Pair, low: float, high: float, *, progress: Callable[[str], None] = lambda _: None
+) -> PairTable:
     """Solve a pair for impacts whose peaks reach Delta/R from `low` to `high`.
+
+    At `quick`: what `production` has more of is in the radius.
 
     Raises `InputError`: it hardly yields there, or the solve does not reach that far.
     """
@@ -87,7 +76,7 @@ def solved_table(
     problem = fem.ContactProblem(
         pair=pair, depths=fem.geometric_depths(first, last, RULES.solve_depths), unload_from=turns
     )
-    accuracy = {"quick": fem.Accuracy.quick, "production": fem.Accuracy.production}[level]()
+    accuracy = fem.Accuracy.quick()
     told = 0.0
 
     def tell(done: float) -> None:
@@ -108,7 +97,7 @@ def _rounded(x: float, way: Callable[[float], int]) -> float:
     return float(way(x / unit) * unit)
 
 
-def _digest(pair: Pair, low: float, high: float, level: str) -> str:
+def _digest(pair: Pair, low: float, high: float) -> str:
     from ...fem.problem import NUMERICS_VERSION
 
     bodies = [
@@ -116,7 +105,7 @@ def _digest(pair: Pair, low: float, high: float, level: str) -> str:
         for b in (pair.sphere, pair.flat)
     ]
     told = json.dumps(
-        [NUMERICS_VERSION, level, RULES.solve_turns, RULES.solve_depths, low, high, bodies],
+        [NUMERICS_VERSION, "quick", RULES.solve_turns, RULES.solve_depths, low, high, bodies],
         sort_keys=True,
     )
     return hashlib.sha256(told.encode()).hexdigest()[:24]

@@ -59,16 +59,6 @@ def strengths_of(pair: Pair) -> str:
     return "near-equal" if low <= pair.Sy_ratio <= high else "unlike"
 
 
-def largest_force_error(level: str, pair: Pair, depth: float) -> float:
-    """Largest relative uncertainty of the force up to Delta/R = depth at a level of accuracy."""
-    content = _mesh_errors()
-    knots = np.array(content["depth_over_first_yield"])
-    last = max(depth / pair.first_yield, knots[0])
-    row = np.array(content["levels"][level][strengths_of(pair)]["force"])
-    reached = np.append(row[knots <= last], np.interp(math.log(last), np.log(knots), row))
-    return float(reached.max())
-
-
 def discretisation_uncertainty(
     curve: Curve, problem: ContactProblem, accuracy: Accuracy
 ) -> CurveUncertainty:

@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dentscope import fem
 from dentscope.core import Material, Pair
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy import verdict
-from dentscope.discrepancy.baseline.solve import _level
+from dentscope.discrepancy.baseline.solve import solved_table
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
 from dentscope.discrepancy.experiments.feasible import candidates_of, presses_of
@@ -213,20 +214,17 @@ def test_curves_at_several_rates_narrow_the_rise() -> None:
     assert kept.tolist() == [0.87, 0.08]
 
 
-@pytest.mark.parametrize(("error", "level"), [(0.024, "quick"), (0.026, "production")])
-def test_a_mesh_may_be_off_by_a_quarter_of_the_metal(monkeypatch, error, level) -> None:
-    """And is asked a little deeper than the impacts go."""
-    from dentscope.fem.results import uncertainty
+def test_the_own_pair_is_solved_a_little_deeper_than_the_impacts_go(monkeypatch) -> None:
+    class Asked(Exception):
+        pass
 
-    asked = []
+    def asked(problem, **more):
+        raise Asked(f"{problem.depths[-1]:.6g}")
 
-    def largest(name, pair, deepest):
-        asked.append(deepest)
-        return error if name == "quick" else 0.0
-
-    monkeypatch.setattr(uncertainty, "largest_force_error", largest)
-    assert _level(None, 0.01, 0.1) == level
-    assert asked[0] == pytest.approx(0.013)
+    body = Material(E=2e11, nu=0.3, Sy=3e8)
+    monkeypatch.setattr(fem, "solve", asked)
+    with pytest.raises(Asked, match=r"^0\.013$"):
+        solved_table(Pair(body, body, R=1.0), 0.001, 0.01)
 
 
 def test_next_mark_is_none_where_a_tenth_is_all_that_is_gained() -> None:
