@@ -22,8 +22,9 @@ _OF_KIND: Mapping[str, tuple[float, ...]] = {
     "speed": (-1.5, -1, 1, 1.5),
 }  # fmt: skip
 # limit: misfit from which units are looked for [-], and how much of it the right one leaves; share
-# of the readings that another unit has to explain, since some are stray; most that one counts
-_FAR, _LEFT, _MOST, _STRAY = math.log(1.6), 0.35, 0.7, 10.0
+# of the readings that another unit has to explain, since some are stray; most that one counts;
+# deviations of the noise above which a prediction is seen
+_FAR, _LEFT, _MOST, _STRAY, _SEEN = math.log(1.6), 0.35, 0.7, 10.0, 3.0
 
 
 def with_units(simulator: Simulator) -> Problem:
@@ -38,7 +39,7 @@ def with_units(simulator: Simulator) -> Problem:
 
     def misfit(off: Array) -> float:
         most = np.minimum(np.abs(off), _STRAY)
-        return float(max(np.nanmean(most[some]) for some in here.values()))
+        return float(max(np.mean(most[some]) for some in here.values()))
 
     if not misfit(off) > _FAR:
         return problem
@@ -48,7 +49,7 @@ def with_units(simulator: Simulator) -> Problem:
         if type(number) is WrongNumber and problem.by_density.get(number.key, True)
         for power in _OF_KIND.get(number.kind, ())
     }  # fmt: skip
-    best = min(numbers, key=lambda x: numbers[x])
+    best = min(numbers, key=lambda x: numbers[x], default=("", 1.0))
     misread, read_right = {}, off.copy()
     for name, some in here.items():
         near = np.abs(off[some, None] - _POWERS * math.log(10.0)) < math.log(NEAR_UNIT)
@@ -56,16 +57,19 @@ def with_units(simulator: Simulator) -> Problem:
             power = float(_POWERS[int(near.mean(axis=0).argmax())])
             misread[name] = 10.0**power
             read_right[some] -= power * math.log(10.0)
-    if numbers[best] < min(_LEFT * misfit(off), misfit(read_right)):
+    if numbers.get(best, math.inf) < min(_LEFT * misfit(off), misfit(read_right)):
         return replace(problem, misread=dict([best]))
     less = [min(misread.get(name, 1.0), 1.0) for name in cells.observable]
     return replace(problem, misread=misread, cells=replace(cells, std=cells.std * np.array(less)))
 
 
 def _off(simulator: Simulator, *of: WrongNumber, times: float = 1.0) -> Array:
-    """Ln of readings over what is predicted with the stated numbers, some of them multiplied."""
+    """Ln of readings over what is predicted with the stated numbers, some of them multiplied.
+
+    0 where a ratio says nothing: of unlike signs, or of what is predicted within the noise.
+    """
     cells, at = simulator.problem.cells, {n.name: {n.parameters[0].name: times} for n in of}
     there = simulator.predict(of, [Point(np.zeros(simulator.problem.n_z), at)])[0]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = np.log(cells.value / there)  # of readings of both signs: nan, near no unit
+    seen = (np.sign(cells.value) == np.sign(there)) & (np.abs(there) > _SEEN * cells.std)
+    ratio = np.log(np.divide(cells.value, there, out=np.ones_like(there), where=seen))
     return np.asarray(np.where(cells.is_log, cells.value - there, ratio))

@@ -1,12 +1,16 @@
 """A ball that nobody weighed is as heavy as its radius says; one that was may contradict it."""
 
 import math
+from dataclasses import make_dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import dentscope as ds
 import numpy as np
 import pytest
+from dentscope.discrepancy.comparison.cells import Cells
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
+from dentscope.discrepancy.comparison.units import with_units
 from dentscope.discrepancy.report import page, story_of
 from dentscope.recordings import audit, read
 
@@ -28,6 +32,7 @@ density_kg_m3 = {{ value = 7800, std = 39 }}
 restitution = 0.005
 dent_diameter_m_relative = 0.01
 """
+Given = make_dataclass("Given", ["cells", "wrong_numbers", "by_density", "misread", "n_z"])
 TRUE = 4.0 / 3.0 * math.pi * 5e-3**3 * 7800
 
 
@@ -144,3 +149,20 @@ def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> 
         assert wrong.would_be is not None
         assert wrong.would_be[1] < 5.1e-3
         assert wrong.would_be[2] > 4.9e-3
+
+
+def test_readings_of_unlike_signs_or_within_the_noise_have_no_unit() -> None:
+    """And where every number is a guess, a unit of the readings is found all the same."""
+
+    def misread(*values: float, predicted: float) -> dict[str, float]:
+        n = len(values)
+        cells = Cells(
+            np.arange(n), ("rebound_spin_rad_s",) * n, np.array(values), np.ones(n), np.ones(n)
+        )
+        given = Given(cells, (), {}, {}, 0)
+        there = SimpleNamespace(problem=given, predict=lambda *_: np.full((1, n), predicted))
+        return with_units(there).misread
+
+    assert misread(1.0, 1.1, 0.9, predicted=1000.0) == {"rebound_spin_rad_s": 1e-3}
+    assert misread(1.0, -1.1, -0.9, predicted=1000.0) == {}
+    assert misread(1.0, 1.1, 0.9, predicted=0.1) == {}
