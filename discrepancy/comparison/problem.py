@@ -130,13 +130,10 @@ class Problem:
         observed = tuple(dict.fromkeys(self.cells.observable))
         oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
         found = wrong_numbers(
-            frozenset(known),
-            strikers,
-            observed,
-            fallen=fallen,
-            oblique=oblique,
+            frozenset(known), strikers, observed, fallen=fallen, oblique=oblique,
+            squares="restitution" in observed and self.baseline != "measured-restitution",
             misread=self.misread,
-        )
+        )  # fmt: skip
         return tuple(found)
 
     @property

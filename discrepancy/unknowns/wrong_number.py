@@ -242,6 +242,7 @@ def wrong_numbers(
     *,
     fallen: float,
     oblique: bool,
+    squares: bool,
     misread: Mapping[str, float],
 ) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
@@ -250,6 +251,7 @@ def wrong_numbers(
     - `strikers`, `observed`: what strikes, and what was read.
     - `fallen`: largest radius of what falls from a stated height [m]; 0 where none does.
     - `oblique`: whether a rod leans, or a ball's path.
+    - `squares`: whether a restitution is compared with a simulated one.
     - `misread`: key to the power of ten by which it is off.
     """
     tables = {"target": ("the flat", _OF_TARGET)}
@@ -273,7 +275,7 @@ def wrong_numbers(
         yield WrongHeight(4.0 * fallen)
     if oblique:
         yield WrongAngle()
-    if "restitution" in observed:
+    if squares:
         yield Squared()
     for name in observed if len(observed) > 1 else ():
         title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
