@@ -22,11 +22,6 @@ def smoothed(delta: Array, values: Array) -> Array:
     return out
 
 
-def ripple(delta: Array, values: Array) -> float:
-    """Rms deviation from the local quadratic."""
-    return float(np.sqrt(np.mean((values - smoothed(delta, values)) ** 2)))
-
-
 def inner(delta: Array) -> Mask:
     """Points at least half a window from the ends, where the local fit is one-sided and noisy."""
     x = np.log(delta)

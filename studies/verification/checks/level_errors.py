@@ -18,14 +18,13 @@ from ....core.arrays import Array
 from ....core.output import write_file
 from ..bench import Bench, Solved
 from ..result import Cell, Measurement, Result, Table
-from . import convergence
 
 _KNOTS = np.log([0.3, 1.0, 2.0, 4.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5])  # of Delta/delta_c
 _REACH = (
     0.6  # a knot speaks for what lies within this in the logarithm, or nearer to it than others
 )
 _DEEPEST, _DEPTHS = 0.1, 48
-_UNITS = np.array([0.01, 0.01, 1.0, 0.01])  # of `convergence.curves`
+_UNITS = np.array([0.01, 0.01, 1.0, 0.01])  # of `_curves`
 _COLUMNS = ("force", "radius", "sphere_share", "hardness")
 _COVERED = (("one", 0.62, 1.0), ("two", 0.92, 1.0))
 _PAIRS = (
@@ -148,9 +147,15 @@ def _difference(other: Solved, base: Solved, delta: Array) -> Array:
     """Of ln F, ln a, share and ln H as they are, ripple and all; shape (4, n)."""
     there, here = (
         np.array([np.interp(np.log(delta), np.log(solved["delta"]), y) for y in curves])
-        for solved, curves in ((s, convergence.curves(s)) for s in (other, base))
+        for solved, curves in ((s, _curves(s)) for s in (other, base))
     )
     return np.asarray(_UNITS[:, None] * (there - here))
+
+
+def _curves(solved: Solved) -> tuple[Array, Array, Array, Array]:
+    """Ln F [%], ln a [%], the share and ln H [%] along a loading."""
+    F, a = np.log(solved["force"]), np.log(solved["radius"])
+    return 100.0 * F, 100.0 * a, solved.share, 100.0 * (F - 2.0 * a)
 
 
 def _tables(offs: Iterable[Off]) -> dict[str, Array]:
