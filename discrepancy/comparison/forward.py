@@ -27,6 +27,9 @@ _THREAD_FROM = 200
 # limit: scenes that are simulated together [-]: memory
 _BATCH = 4000
 
+# limit: scenes whose outcome is kept [-]: memory, some 3 kB each
+_KEPT = 20_000
+
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
 """Columns behind those of the integrator."""
@@ -87,14 +90,17 @@ def _struck(scenes: list[Scene]) -> Array:
 class Simulator:
     """Predicts the cells of a problem, and counts the impacts that it takes.
 
-    `tally`: `impacts` that were simulated, over all problems that share the count.
+    - `tally`: `impacts` that were simulated, over all problems that share the count.
+    - `met`, `rows`: the place of every scene that was simulated, and the rows by place, likewise.
     """
 
     problem: Problem
     tally: Counter[str] = field(default_factory=Counter)
+    met: dict[Scene, int] = field(default_factory=dict, repr=False)
+    rows: list[Array] = field(default_factory=list, repr=False)
 
     def of(self, problem: Problem) -> Simulator:
-        """Return the simulator of another problem, with the same tally."""
+        """Return the simulator of another problem, with the same tally and rows."""
         return replace(self, problem=problem)
 
     def predict(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> Array:
@@ -145,9 +151,8 @@ class Simulator:
                 scene = attached(mechanisms, scene, point.values, condition.around)
                 situations.append((scene, condition.around))
         scenes = [s for s, _ in situations]
-        rows = _struck_or_pressed(scenes)
+        rows = self._rows(scenes)
         self._later_blows(scenes, rows)
-        self.tally["impacts"] += len(rows)
         shape = (len(points), len(problem.conditions))
         seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
         seen["press_depth_m"] = rows[:, _PRESS_DEPTH].copy()
@@ -173,6 +178,23 @@ class Simulator:
             for k in dict.fromkeys(name for name, _ in problem.scales):
                 seen[k][part] *= problem.scale(k, point.z)
         return {k: v.reshape(shape) for k, v in seen.items()}
+
+    def _rows(self, scenes: list[Scene]) -> Array:
+        """Simulate what was not met before: a number of one striker leaves the others' scenes."""
+        met, rows, new = self.met, self.rows, dict[Scene, int]()
+        if len(met) + len(scenes) > _KEPT:
+            met.clear()
+            rows.clear()
+        # hashing a scene takes a tenth of the time of a simple impact: once where it was met
+        places = [
+            new.setdefault(s, len(met) + len(new)) if (i := met.get(s)) is None else i
+            for s in scenes
+        ]
+        if new:
+            rows.extend(_struck_or_pressed(list(new)))
+            met.update(new)
+            self.tally["impacts"] += len(new)
+        return np.stack([rows[i] for i in places])
 
     def _later_blows(self, scenes: list[Scene], rows: Array) -> None:
         """Integrate again, in order, what meets the crater of an earlier blow."""
