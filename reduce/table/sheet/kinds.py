@@ -37,7 +37,8 @@ _WIDE = _ENDS.format(f"({letters(words.SPREADS)}|{letters(words.ERRORS)})")
 _SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?", re.IGNORECASE)
 _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
-_PLAIN = CONDITIONS.keys() | MEASURED.keys()
+_PLAIN = (CONDITIONS.keys() | MEASURED.keys()) - {"striker"}
+"""Headers as a set has them; a striker is found by its words, as a ball is: its cells are names."""
 
 
 @lru_cache(maxsize=4096)

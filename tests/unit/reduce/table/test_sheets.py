@@ -614,10 +614,11 @@ def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, capsys):
     assert "several balls: K1, K2" in capsys.readouterr().err
 
 
-def test_a_ball_that_is_written_once_holds_for_the_rows_below(tmp_path):
+@pytest.mark.parametrize("header", ["Kugel", "striker"])
+def test_a_ball_that_is_written_once_holds_for_the_rows_below(tmp_path, header):
     rows = "K1;20;5\n;40;9\nMittel;;7\nK2;20;10\n;40;20\n"
     file = tmp_path / "a.csv"
-    file.write_text(f"Kugel;Fallhöhe (cm);Rückprallhöhe (cm)\n{rows}", encoding="utf-8")
+    file.write_text(f"{header};Fallhöhe (cm);Rückprallhöhe (cm)\n{rows}", encoding="utf-8")
     found = {ball: restitutions(sheet) for ball, sheet in read_balls(file).items()}
     assert found["K1"] == pytest.approx([0.5, math.sqrt(0.225)])
     assert found["K2"] == pytest.approx([math.sqrt(0.5)] * 2)
