@@ -17,6 +17,7 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...core.inputs.materials import materials, unlisted
+from ...core.inputs.rig_numbers import solid_mass
 from ...core.rig import Quantity
 from ...models.base import ContactLaw, DomainWarning, unwarned
 from ...models.choose import demand, follows_flow
@@ -38,6 +39,9 @@ _MAY_MATTER = 0.25
 
 # limit: departure from a solid sphere's mass that is told [-]; three digits of a sheet
 _MASS_OFF = 0.01
+
+# limit: the same of a rod [-]; bores and collars
+_ROD_OFF = 0.05
 
 # limit: restitution from which it is told to be above 1 [-]; half of its last digit shown
 _ABOVE_ONE = 1.0 + 5e-4
@@ -341,21 +345,29 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
             yield f"{key}: {unlisted(body.material)}without Sy_Pa it stays elastic"
     name, second = setup.striker, file.target
     ball = file.strikers[name]
-    if ball.shape == "sphere":
-        yield from _mass(f"strikers.{name}", ball.mass_kg, ball.body_radius, ball.density_kg_m3)
+    yield from _mass(
+        f"strikers.{name}", ball.mass_kg, ball.body_radius, ball.density_kg_m3, ball.length
+    )
     if second.mass_kg is not None and second.radius_m is not None:
         yield from _mass("target", second.mass_kg, second.radius_m.value, second.density_kg_m3)
 
 
-def _mass(key: str, mass: Quantity, radius: float, density: Quantity | None) -> Iterator[str]:
-    """A mass that is not that of a solid sphere; nothing is said of a seat."""
+def _mass(
+    key: str, mass: Quantity, radius: float, density: Quantity | None, length: float = 0.0
+) -> Iterator[str]:
+    """A mass that is not that of a solid sphere or rod; nothing is said of a seat."""
     if density is None or radius < 0.0:
         return
-    solid = 4.0 / 3.0 * math.pi * radius**3 * density.value
-    if abs(mass.value / solid - 1.0) > _MASS_OFF:
+    off, shape, ends = _MASS_OFF, "sphere of its radius", 0.0
+    solid = solid_mass(radius, density.value)
+    if length > 0.0:
+        # beyond its length the ends have at most a radius each
+        off, shape, ends = _ROD_OFF, "rod of its size", 2.0 * radius / length
+        solid = density.value * math.pi * radius**2 * length
+    if not 1.0 - off < mass.value / solid < (1.0 + ends) * (1.0 + off):
         yield (
-            f"{key}: {mass.value:.4g} kg as stated; a solid sphere of its radius and density has "
-            f"{solid:.4g} kg"
+            f"{key}: {mass.value:.4g} kg as stated; a solid {shape} and density has {solid:.4g} kg"
+            f"{' without its ends' * (ends > 0.0)}"
             f"{'; the contact law takes a shell for solid' * (mass.value < solid)}"
         )
 

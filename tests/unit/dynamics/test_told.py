@@ -241,6 +241,11 @@ ASKED = {
                                "mass_kg": 0.245}}},
         "mechanisms.rod-longitudinal-waves lets it vibrate",
     ),
+    "a rod in grams": (  # rho pi r^2 L of 0.01 x 0.1 m
+        {"strikers": {"ball": {"shape": "rod", "radius_m": 0.01, "length_m": 0.1,
+                               "mass_kg": 245.0}}},
+        "245 kg as stated; a solid rod of its size and density has 0.2454 kg without its ends",
+    ),
     "an upright rod that may bend": (
         {"strikers": {"ball": {"shape": "rod", "radius_m": 0.005, "length_m": 0.1,
                                "mass_kg": 0.0613}}, "impact": {"modes": 2}},
