@@ -119,7 +119,10 @@ def nearest(header: str) -> str:
         if k.quantity != "text" and quantity in ("", k.quantity) and not words.has(k.never, text)
     ]  # fmt: skip
     likeness = {k: sum(_like(part, text) for part in k.parts) / len(k.parts) for k in kinds}
-    best = max(likeness, key=lambda kind: likeness[kind], default=None)
+    # of a rebound, the height or speed is what is read, hardly ever the spin
+    best = max(
+        likeness, key=lambda kind: (likeness[kind], kind.name in words.REBOUNDS), default=None
+    )
     if best is None or not likeness[best]:
         return ""
     unit = "" if quantity or best.quantity == "number" else " UNIT"

@@ -369,6 +369,7 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("a;b\n10;5\n20;9\n", "no row of headers is understood"),
         ("C (GPa),hm\n10,5\n20,9\n", "no row of headers is understood"),
         ("Fallhöhe (cm);Abdruck (mm)\n10;5\n", "dent diameter\\? --column 'Abdruck=dent diameter'"),
+        ("Hauteur;Rebond\n100;10\n", "rebound height\\? --column 'Rebond=rebound height UNIT'"),
         ("Drop (cm),Rebound 1 (cm),Rebound 2 (cm)\n100,64,41\n50,31,20\n",
          "as the next bounce does"),
         ("v (m/s),dent depth (um),dent depth SD (%)\n1,9,2\n", "'%' is no unit of length"),
