@@ -26,18 +26,20 @@ from ..table.file import (
     text_rows,
 )  # fmt: skip
 from ..table.packed import TABLE_BYTES
+from ..table.sheet.words import bare
 from ..table.workbook import sheets_of
 from .options import PressOptions
 
 _LOADS = (
     r"(load|force|.*kraft|last|fn|p|f)\b",
-    r".*(load|force|kraft|charge|forza|fuerza|carico|carga)",
+    r".*(load|force|kraft|charge|effort|forza|fuerza|carico|carga)",
 )
 _DEPTHS = (
-    r"(depth|.*eindring\w*|.*tiefe|indentation|penetration|pd|h)\b",
+    r"(depth|.*eindring\w*|.*tiefe|indentation|penetra\w*|enfoncement|pd|h)\b",
     r".*prof(ond|und)\w*",
     r"(disp|displacement)\b", r".*(standardweg|extenso|lvdt|gauge)", r".*(displacement|depth|disp)",
-    r".*(extension|weg|stroke|travel|crosshead|position)",
+    r".*(deplacement|desplaza|spostament|desloca)",
+    r".*(extension|weg|stroke|travel|crosshead|position|course|traverse|corsa|carrera)",
 )  # fmt: skip
 _TIMES = (r"(time|.*zeit|t|temps|tempo|tiempo)\b", r".*time")
 """Words of Zwick, Instron, MTS, Bruker and Hysitron, Agilent and Keysight, Anton Paar and CSM,
@@ -135,9 +137,9 @@ def _named(table: Columns, words: Sequence[str], quantity: str) -> int | None:
     units = UNITS[quantity]
     for word in words:
         for k, name in enumerate(table.names):
-            bare = re.sub(r"[\[(_].*", "", name).strip().lower()
+            text = bare(re.sub(r"[\[(_].*", "", name))
             said = table.unit(k)
-            if re.match(word, bare) and (said in units or not said or said.lower() == bare):
+            if re.match(word, text) and (said in units or not said or said.lower() == text):
                 return k
     return None
 

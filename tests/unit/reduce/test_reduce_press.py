@@ -64,6 +64,12 @@ MAKERS = {
     "anton paar": dict(head="Time [s];Pd [nm];Fn [mN]\n", sizes=(1, 1e9, 1e3), between=";"),
     "in spanish": dict(head="Tiempo (s);Profundidad (µm);Carga (kN)\n", sizes=(1, 1e6, 1e-3),
                        between=";", comma=","),
+    "in french": dict(head="Temps (s);Déplacement (µm);Effort (kN)\n", sizes=(1, 1e6, 1e-3),
+                      between=";", comma=","),
+    "sunk in, in french": dict(head="Temps (s);Enfoncement (µm);Charge (N)\n", sizes=(1, 1e6, 1),
+                               between=";", comma=","),
+    "a stroke in french": dict(head="Temps (s);Course (mm);Force (N)\n", sizes=(1, 1e3, 1),
+                               between=";", comma=","),
     "hysitron": dict(head="Number of Points = 310\nTime (s)\tDepth (nm)\tLoad (µN)\n",
                      sizes=(1, 1e9, 1e6), between="\t"),
 }  # fmt: skip
