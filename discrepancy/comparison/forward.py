@@ -77,12 +77,13 @@ def _struck(scenes: list[Scene]) -> Array:
     # The filter is set here, because inside a thread the law's own one would race; tables reach
     # beyond the data that the law was fitted to.
     step = max(2, len(scenes) // _THREAD_FROM)
-    parts = [scenes[k::step] for k in range(step)]
+    rows = np.empty((len(scenes), c.N_OUT))
+
+    def fill(k: int) -> None:
+        rows[k::step] = strike_batch(scenes[k::step], ACCURACY)
+
     with unwarned(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
-        found = list(pool.map(lambda part: strike_batch(part, ACCURACY), parts))
-    rows = np.empty((len(scenes), found[0].shape[1]))
-    for k, struck in enumerate(found):
-        rows[k::step] = struck
+        list(pool.map(fill, range(step)))
     return rows
 
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.choice.decide import decide
 from dentscope.discrepancy.choice.odds import OUTSIDE, Odds
+from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.inference.derivatives import measured_covariance
+from dentscope.discrepancy.unknowns.nuisances import Nuisance
 from dentscope.recordings import read
 
 NOISE = {
@@ -36,6 +38,26 @@ def test_four_bounces_in_two_columns_are_four_numbers(problem) -> None:
     given = problem(bounces([v * e for _, v, e in FOUR]))
     assert given.cells.observable == ("restitution",) * 4
     assert any("rebound_speed_m_s is restitution times" in note for note in given.notes)
+
+
+def test_a_number_of_one_ball_leaves_the_impacts_of_the_other(problem) -> None:
+    """Five impacts, and again the three of the ball whose number moves; nothing else changes."""
+    rows = [*FOUR[:3], ("e", 1.0, 0.538), ("f", 2.0, 0.47)]
+    balls = ["small"] * 3 + ["large"] * 2
+    text = "trial,striker,angle_deg,impact_speed_m_s,restitution\n"
+    text += "".join(f"{t},{b},90,{v},{e}\n" for b, (t, v, e) in zip(balls, rows, strict=True))
+    given = problem(text)
+    one = Nuisance("strikers.small.mass_kg", "kg", 4.1e-3, 0.1, True)
+    given = replace(given, nuisances=(one, *given.nuisances))
+    z = np.zeros((2, given.n_z))
+    z[1, 0] = 1.0
+    simulator = Simulator(given)
+    counted = []
+    for at in (z[0], z[1], z[0]):
+        found = simulator.predict((), [Point(at)])
+        assert np.array_equal(found, Simulator(given).predict((), [Point(at)]))
+        counted.append(simulator.tally["impacts"])
+    assert counted == [5, 8, 8]
 
 
 def test_a_second_instrument_counts(problem) -> None:
