@@ -63,6 +63,11 @@ class Material:
                 allowed="a number above 0, or left out for a purely elastic body",
             )
         if self.flow is not None:
+            if not hasattr(self.flow, "curve"):
+                raise InputError(
+                    repr(self.flow), key="flow",
+                    allowed="a core.flow.Flow; dentscope.Material(flow=...) reads files and rows",
+                )  # fmt: skip
             self._check_flow(self.flow)
 
     def _check_flow(self, flow: Flow) -> None:
@@ -80,8 +85,13 @@ class Material:
         return math.inf if self.rigid else self.E / (1.0 - self.nu**2)
 
     def with_(self, **changes: Any) -> Self:
-        """Return a copy with some fields replaced."""
-        return replace(self, **changes)
+        """Return a copy with some fields replaced.
+
+        Raises `InputError`: in place of a number in SI units one that is of a metal in another.
+        """
+        from .rig import changed  # which is made of this
+
+        return replace(self, **changed(self, changes))
 
     def strengthened(self, factor: float) -> Self:
         """Return the body with so many times its strength, its flow curve with it."""

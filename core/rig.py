@@ -8,7 +8,7 @@ speak the same language. A value that the file leaves out is `None`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
@@ -23,6 +23,7 @@ from pydantic import (
     model_validator,
 )
 
+from .arrays import one_number
 from .errors import InputError
 from .inputs.materials import Mistyped, filled, unlisted
 from .inputs.names import FileName
@@ -114,10 +115,10 @@ class Within:
 
     def wanted(self, value: float) -> str:
         """Return what is allowed, and the unit perhaps meant; empty for a value in the range."""
-        return "" if self.accept(value) else f"{self.allowed}{self._asked(value)}"
+        return "" if self.accept(value) else f"{self.allowed}{self.asked(value)}"
 
-    def _asked(self, value: float) -> str:
-        """The unit that was perhaps meant."""
+    def asked(self, value: float) -> str:
+        """Return the unit that was perhaps meant of a value outside the range, or ""."""
         for unit, factor in self.units:
             if self.accept(factor * value):
                 return f"; {value:g} {unit} would be {factor * value:g}"
@@ -143,14 +144,16 @@ STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
 STRAINS = _range(0.0, 3.0, **{"%": 1e-2})
 """Of measured plastic strains: torsion reaches the largest."""
 SPEEDS = _range(1e-9, 2e4, **{"mm/s": 1e-3})
-RADII = _range(1e-9, 3.0, mm=1e-3, um=1e-6)
 """Of any approach [m/s]."""
+RADII = _range(1e-9, 3.0, mm=1e-3, um=1e-6)
+_MODULI = _range(1e3, 2e12, GPa=1e9, MPa=1e6)
+_DENSITIES = _range(25.0, 25e3, **{"g/cm^3": 1e3})
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
-Modulus = Annotated[Quantity, _between(1e3, 2e12, GPa=1e9, MPa=1e6)]
+Modulus = Annotated[Quantity, AfterValidator(_MODULI)]
 Strength = Annotated[Quantity, AfterValidator(STRENGTHS)]
-Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
+Density = Annotated[Quantity, AfterValidator(_DENSITIES)]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
 Radius = Annotated[Quantity, AfterValidator(RADII)]
 SeatRadius = Annotated[
@@ -257,6 +260,21 @@ def material_keys(body: Material) -> dict[str, float | bool]:
         return {"rigid": True}
     strength = {"Sy_Pa": body.Sy} if math.isfinite(body.Sy) else {}
     return {"E_Pa": body.E, "nu": body.nu, **strength}
+
+
+def changed(body: Material, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return changes of a body, numbers as such; refuse what would take it out of SI units."""
+    found = dict(changes)
+    for name, known in (("E", _MODULI), ("Sy", STRENGTHS), ("density", _DENSITIES)):
+        if name not in changes:
+            continue
+        key = "density_kg_m3" if name == "density" else f"{name}_Pa"
+        now = found[name] = one_number(changes[name], source="Material", key=key)
+        was = getattr(body, name)
+        in_si = known.accept(was) or not math.isfinite(was)
+        if in_si and not known.accept(now) and known.asked(now):
+            raise InputError(f"{now:g}", source="Material", key=key, allowed=known.wanted(now))
+    return found
 
 
 TABOR = 2.8

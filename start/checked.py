@@ -16,7 +16,7 @@ from ..core.inputs.materials import entry_named
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import RADII, STRAINS, STRENGTHS, MaterialTable, quantities
+from ..core.rig import RADII, STRAINS, STRENGTHS, MaterialTable, material_keys, quantities
 from .case_file import read_flow_curve
 
 FlowLike = Flow | FlowCurve | str | Path | ArrayLike
@@ -141,6 +141,7 @@ would be 0.01)
         for key, body in (("sphere", sphere), ("flat", flat)):
             if not isinstance(body, Body):
                 raise InputError(repr(body), source="Pair", key=key, allowed="a Material")
+            parse_model(material_keys(body), MaterialTable, source=f"Pair: {key}")
         radius = one_number(R, source="Pair", key="R")
         pair = Bodies(sphere, flat, radius)
         if wanted := RADII.wanted(radius):

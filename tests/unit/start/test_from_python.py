@@ -14,6 +14,7 @@ import pandas
 import pytest
 from dentscope import dynamics
 from dentscope.core import InputError
+from dentscope.core import Material as Body
 from dentscope.core.flow import Flow, tabulated
 from dentscope.core.inputs.templates import template
 from dentscope.dynamics.files.setup import ImpactTable, read_setup
@@ -161,9 +162,19 @@ def test_magnitudes_that_no_body_has_are_asked_back():
         (lambda: ds.Material(200e9, 0.3, density=7.8), r"density_kg_m3.*7.8 g/cm\^3 would be 7800"),
         (lambda: ds.Pair(steel, steel, 10), r"R: 10 .*10 mm would be 0.01"),
         (lambda: ds.Pair(0.01, steel, steel), r"sphere: 0\.01"),
+        (lambda: steel.with_(E=200), "Material: E_Pa: 200 .*200 GPa would be 2e"),
+        (lambda: steel.with_(Sy=300), "Material: Sy_Pa: 300 .*300 MPa would be 3e"),
+        (lambda: steel.with_(density=7.8), r"density_kg_m3: 7.8 .*g/cm\^3 would be 7800"),
+        (lambda: steel.with_(Sy="300 MPa"), "Sy_Pa: '300 MPa'"),
+        (lambda: steel.with_(flow="curve.csv"), "flow: 'curve.csv' .*core.flow.Flow"),
+        (lambda: ds.Pair(steel, Body(200.0, 0.3), 0.01), "Pair: flat: E_Pa: 200.0 .*GPa"),
     ):
         with pytest.raises(InputError, match=said):
             call()
+    assert steel.with_(Sy=300e6, density=math.nan).with_(Sy=math.inf) == steel
+    # a body in N, mm and MPa knows no units; of one in SI a soft metal is none in another unit
+    assert Body(200e3, 0.3, 250.0).with_(Sy=300.0).Sy == 300.0
+    assert steel.with_(E=2e17).with_(E=2e5).E == 2e5
 
 
 def test_a_law_that_is_not_known_says_what_comes_near():
