@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..core.errors import InputError
 from ..models.coefficients import laws_from
 from ..models.fitted import ClosedForm
@@ -61,12 +63,16 @@ class Refit:
 def refit(paths: Iterable[Path], *, progress: Progress = lambda _: None) -> Refit:
     """Fit the closed forms to the cases of runs and published parts.
 
-    A combination in two sources counts once, the later wins. `progress` is called with a line
-    before each step. Refused where a source is missing or damaged, or they hold no completed
-    elastic-plastic case.
+    `progress` is called with a line before each step. Refused where a source is missing or damaged,
+    or they hold no two completed elastic-plastic cases that unload.
     """
     sources = read_sources(paths)
     table, turns = tables_of(sources)
+    if (unloaded := len(np.unique(turns.case[np.isfinite(turns.exponent)]))) < 2:
+        raise InputError(
+            f"combinations that unload: {unloaded}", source=", ".join(map(str, sources)),
+            allowed="two or more, `unload_depths` beyond first yield in their design",
+        )  # fmt: skip
     progress(
         f"{', '.join(map(str, sources))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
         f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."

@@ -108,8 +108,8 @@ def read_sources(paths: Iterable[Path]) -> Sources:
 def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, ResidualTable]:
     """Return the two tables of runs and published parts; without a completed case refuse them.
 
-    A combination in two of them counts once, the later wins; a case that the present solver made
-    wins over one that an earlier version of it made. With `held_out` only the cases that are kept
+    A combination that several cases solve counts once: by the one that the present solver made, of
+    these by the one of most unloadings, else by the latest. With `held_out` only the cases that are kept
     out of every fit are read. Cases of the lowest resolution, whose force ripples by percents,
     count only where none is finer. Metals that harden or feel the rate are left out: the forms know
     neither.
@@ -118,7 +118,7 @@ def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, Resid
     found = [r for of in sources.values() for r in of if is_held_out(r) == held_out]
     for record in _fine_ones([r for r in found if _fitted(r.case.pair)]):
         key = tuple(np.round(_key(record.case.pair), 9))
-        if key not in chosen or is_current(record) or not is_current(chosen[key]):
+        if key not in chosen or _worth(record) >= _worth(chosen[key]):
             chosen[key] = record
     if not chosen:
         raise InputError(
@@ -149,6 +149,10 @@ def is_held_out(record: CaseRecord) -> bool:
 def is_current(record: CaseRecord) -> bool:
     """Whether the present version of the solver made this case: it is part of a case's identity."""
     return record.id == record.case.id
+
+
+def _worth(record: CaseRecord) -> tuple[bool, int]:
+    return is_current(record), len(record.unloadings)
 
 
 def _key(pair: Pair) -> Array:

@@ -9,10 +9,12 @@ import pytest
 from dentscope.campaigns.designs import design_named
 from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
+from dentscope.core import InputError
 from dentscope.core.flow import Flow, swift
 from dentscope.core.tables import markdown
 from dentscope.fitting import table
 from dentscope.fitting.prediction import Errors
+from dentscope.fitting.refit import refit
 from dentscope.fitting.table import is_held_out, read_sources, tables_of
 from dentscope.models.coefficients import read_coefficients
 from dentscope.studies.closed_form.page import (
@@ -109,6 +111,23 @@ def test_cases_of_low_resolution_count_only_without_finer_ones(tmp_path, monkeyp
     assert tables_of(read_sources([tmp_path]))[0].names == tuple(case.name for case in fine)
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in low])
     assert len(tables_of(read_sources([tmp_path]))[0].pairs) == 3
+
+
+def test_of_one_combination_the_case_that_unloads_counts(tmp_path, monkeypatch):
+    again, other = (Record(case) for case in design_named("smoke").make()[:2])
+    unloads = Record(again.case)
+    d = np.linspace(2e-5, 1e-5, 9)
+    back = {"delta": d, "force": (d - 1e-5) ** 1.5, "radius": np.full(9, 1e-5)}
+    depth = 2e-5 / again.case.pair.R
+    unloads.unloadings = (
+        SimpleNamespace(depth=depth, residual_sphere=0.0, residual_flat=1e-5, curve=back),
+    )
+    for records in ([unloads, again, other], [again, other, unloads]):
+        monkeypatch.setattr(table, "read_curves", lambda _, found=records: found)
+        rows, turns = tables_of(read_sources([tmp_path]))
+        assert (len(rows.pairs), turns.total.tolist()) == (2, [0.5])
+        with pytest.raises(InputError, match=r"unload: 1 .*two or more, `unload_depths`"):
+            refit([tmp_path])
 
 
 def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
