@@ -38,7 +38,7 @@ CASES, FIELDS = "cases", "fields"
 """Folders of a run: its cases, their full fields."""
 
 _ENDS = {"done": ".h5", "failed": ".failed.h5"}
-_REPAIR = "`dentscope campaign repair` sets it aside, and the next run computes its case again"
+_REPAIR = "`dentscope campaign repair --out {}` sets it aside; the next run computes its case again"
 
 
 class Store:
@@ -171,7 +171,8 @@ def _status(path: Path) -> str:
 def opened_case(path: Path) -> Iterator[h5py.File]:
     """Open a case's file, or refuse one of which a byte has changed."""
     kind = "a file of one case (.h5)"
-    with opened(path, most=_CASE_BYTES, kind=kind, remedy=_REPAIR) as file:
+    remedy = _REPAIR.format(path.parent.parent.parent)  # of RUN/cases/3f/3f2a....h5
+    with opened(path, most=_CASE_BYTES, kind=kind, remedy=remedy) as file:
         if file.attrs.get("format") != FORMAT:
             _refuse_file(path, file.attrs.get("format"))
         yield file

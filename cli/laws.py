@@ -47,6 +47,8 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
 @app.command("list")
 def list_laws() -> None:
     """Every law: for which body, and whether its equations could be read."""
+    from ..core.inputs.added import LAWS as GROUP
+    from ..core.inputs.added import names_added
     from ..models import LAWS, UNAVAILABLE
 
     head = ["law", "yields", "equations"]
@@ -57,6 +59,7 @@ def list_laws() -> None:
         "paper. unverified: they rest on the thesis, on memory, on limits and continuity.",
         "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.",
         f"Not offered: {', '.join(UNAVAILABLE)}.",
+        f"Of other packages: {', '.join(names_added(GROUP)) or 'none'}.",
         "Sources, ranges and reasons: dentscope laws show NAME",
     ):
         typer.echo(wrapped(text))
@@ -119,10 +122,6 @@ def compare(
 
 
 def _described_in(law: ContactLaw) -> str:
-    import sys
-
     kernels = getattr(law, "own", None)
-    if kernels is None:
-        return type(law).__module__.split(".", 1)[-1]
-    place = sys.modules[kernels.residual.py_func.__module__]
-    return str(place.__name__).split(".", 1)[-1]
+    place = kernels.residual.py_func if kernels else type(law)
+    return str(place.__module__).removeprefix("dentscope.")

@@ -109,8 +109,8 @@ def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, Resid
     """Return the two tables of runs and published parts; without a completed case refuse them.
 
     A combination that several cases solve counts once: by the one that the present solver made, of
-    these by the one of most unloadings, else by the latest. With `held_out` only the cases that are kept
-    out of every fit are read. Cases of the lowest resolution, whose force ripples by percents,
+    these by the one of most unloadings, else by the latest. With `held_out` only the cases that are
+    kept out of every fit are read. Cases of the lowest resolution, whose force ripples by percents,
     count only where none is finer. Metals that harden or feel the rate are left out: the forms know
     neither.
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -71,6 +71,8 @@ def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> 
         table = parameters(pair)[None, :]
         row = np.zeros(d.size, dtype=np.int64)
     else:
+        if not (isinstance(pair, Iterable) and all(isinstance(p, Pair) for p in pair)):
+            raise InputError(repr(pair), key="pair", allowed="a Pair, or one for each depth")
         table = np.stack([parameters(p) for p in pair])
         if d.ndim == 0:
             d = np.broadcast_to(d, len(table))

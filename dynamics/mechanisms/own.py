@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from ...core.errors import InputError
 from ...core.inputs.added import MECHANISMS as GROUP
@@ -11,17 +11,20 @@ from . import MECHANISMS, NAMELESS
 from .base import Mechanism
 
 
-def own_mechanisms(given: Sequence[Mechanism]) -> tuple[Mechanism, ...]:
-    """Return those that were given and those of other packages, which may be classes.
+def own_mechanisms(given: Mechanism | Sequence[Mechanism]) -> tuple[Mechanism, ...]:
+    """Return those that were given, one or several, and those of other packages; or their classes.
 
     Raises `InputError`: one is no mechanism, or bears a name of the library or of another.
     """
-    found = [*given, *(added(GROUP, name) for name in names_added(GROUP))]
+    found = [
+        *(given if isinstance(given, Iterable) else (given,)),
+        *(added(GROUP, name) for name in names_added(GROUP)),
+    ]
     own = tuple(m() if isinstance(m, type) else m for m in found)
     taken = {m.name for m in (*MECHANISMS, *NAMELESS)}
     for m in own:
         if not isinstance(m, Mechanism):
-            raise InputError(f"{m!r} is no Mechanism", key="mechanisms")
+            raise InputError(f"{m!r}", key="mechanisms", allowed="each a discrepancy.Mechanism")
         if m.name in taken:
             raise InputError(
                 f"{m.name!r} is taken", key="mechanisms", allowed="a name of its own for each"

@@ -295,7 +295,7 @@ def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
     image = bytearray(hit.read_bytes())
     image[-100] ^= 1
     hit.write_bytes(image)
-    with pytest.raises(InputError, match="campaign repair"):
+    with pytest.raises(InputError, match=f"campaign repair --out {tmp_path}`"):
         read_curves(tmp_path)
     kept, lost = Store(tmp_path).repair()
     assert kept == 3

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import dentscope as ds
 import pytest
+from dentscope.cli import run as dentscope
 from dentscope.core import InputError
 from dentscope.core.inputs import added
 from dentscope.core.inputs.toml_input import InputTable
@@ -51,8 +52,10 @@ def importable(monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
 
 
-def test_a_law_of_another_package_is_found_by_its_name(packages, importable):
+def test_a_law_of_another_package_is_found_by_its_name(packages, importable, capsys):
     packages(laws=("toy", f"{HERE}:TOY_LAW"))
+    assert dentscope(["laws", "list"]) == 0
+    assert "Of other packages: toy." in capsys.readouterr().out
     assert law_named("toy").name == "johnson"
     with pytest.raises(InputError, match=r"'other'.*toy"):
         law_named("other")
@@ -74,10 +77,10 @@ def test_a_mechanism_of_another_package_is_tried_too(packages, importable):
     assert "neither the calibration of the probabilities nor the blind proof" in note
 
 
-@pytest.mark.parametrize("given", [[MECHANISMS[0]], [Toy(), Toy()], [3]])
+@pytest.mark.parametrize("given", [MECHANISMS[0], [Toy(), Toy()], [3], 3])
 def test_what_is_no_mechanism_or_bears_a_name_of_the_library_is_refused(packages, given):
     packages()
-    with pytest.raises(InputError, match=r"is taken|is no Mechanism"):
+    with pytest.raises(InputError, match=r"is taken|3 \(allowed: each a discrepancy.Mechanism"):
         own_mechanisms(given)
 
 
