@@ -100,6 +100,23 @@ def test_a_rod_is_barely_held_back_and_a_peak_is_not_passed() -> None:
     assert 1.0 < rod_drag_across(1e4, 1e6) * 1.2 / 0.98 < 1.2
 
 
+def test_a_fluid_moves_along_half_of_what_a_ball_displaces() -> None:
+    """Released, a ball in water falls with (m - rho V) g/(m + rho V/2) before drag is felt."""
+    ball = sphere(0.02, 2600.0)
+    v = -float(flown(ball, Fluid(1000.0, 1e-6), normal=0.0, rise=-2e-6).normal)
+    assert v**2 / 4e-6 == pytest.approx(9.81 * 1600.0 / 3100.0, rel=1e-3)
+
+
+def test_a_short_rod_across_sinks_by_the_drag_of_its_whole_length() -> None:
+    """Weight less buoyancy is rho v^2/2 C_D (L + d) d, its round ends included."""
+    d, L = 0.01, 0.02
+    volume = math.pi * d**2 / 4.0 * L + math.pi / 6.0 * d**3
+    rod = Striker(mass=2600.0 * volume, tip_radius=d / 2, length=L, radius=d / 2)
+    v = -float(flown(rod, WATER, normal=0.0, rise=-3.0, angle=0.0).normal)
+    held = 500.0 * v**2 * rod_drag_across(1000.0 * v * d / 1e-3, (L + d) / d) * (L + d) * d
+    assert held == pytest.approx(1600.0 * volume * 9.81, rel=1e-4)
+
+
 def test_a_speed_that_is_no_number_is_refused() -> None:
     with pytest.raises(InputError, match="not a number"):
         flown(BALL, air(), normal=math.nan, rise=1.0)

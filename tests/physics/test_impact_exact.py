@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.dynamics import Approach, Friction, Settings, Striker, scene_of, strike
+from dentscope.dynamics import Approach, Friction, Settings, Striker, scene_of, strike, traced
 from dentscope.dynamics.inverse import alpha, mobility
 from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
 from dentscope.models.kernel import E, R, S, kernel
@@ -100,6 +100,22 @@ def test_constant_pressure_loses_restitution_with_the_fourth_root_of_speed() -> 
     F, a = 2.0 * math.pi * 0.01 * p * depth, math.sqrt(0.02 * depth)
     squared = 0.3 * F**2 / (scene.pair.E_reduced * a) / (0.5 * F * depth)
     assert strike(scene).restitution == pytest.approx(math.sqrt(squared), rel=1e-7)
+
+
+def test_a_tip_that_ploughs_is_held_by_its_front_as_well() -> None:
+    """Bowden and Tabor: of a sphere in sliding T = (mu + s 4/(3 pi) a/R) F; Hertz's a^2 = R d."""
+    scene = scene_of(
+        HERTZ, sphere=STEEL, flat=STEEL, striker=Striker(mass=0.03, tip_radius=0.01),
+        approach=Approach(2.0, tangential=-40.0), friction=Friction(0.1, ploughing=1.5),
+    )  # fmt: skip
+    trace = traced(scene, points=50)
+    depth, force, held = map(
+        trace.column, ("penetration_m", "normal_force_N", "tangential_force_N")
+    )
+    seen = force > 0.1 * force.max()
+    ratio = 0.1 + 1.5 * 4.0 / (3.0 * math.pi) * np.sqrt(depth / 0.01)
+    assert np.abs(held[seen] / force[seen]) == pytest.approx(ratio[seen], rel=1e-9)
+    assert ratio.max() > 0.12
 
 
 @pytest.mark.parametrize(("angle", "mu"), [(20, 0.0), (20, 0.2), (45, 0.13), (70, 0.1)])

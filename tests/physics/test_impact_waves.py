@@ -16,6 +16,8 @@ from dentscope.dynamics import (
     traced,
 )
 from dentscope.dynamics.beam import axial_frequencies, bending_modes, shear_coefficient
+from dentscope.dynamics.mechanisms.base import Surroundings
+from dentscope.dynamics.mechanisms.half_space_waves import HalfSpaceWaves
 from dentscope.dynamics.support import half_space_radiation, plate_support, radiated_shares
 from dentscope.models import LAWS
 from dentscope.models.published.hertz import HERTZ
@@ -178,6 +180,8 @@ def test_half_space_takes_hunters_share() -> None:
     impact = strike(scene.with_(force=type(scene.force)(radiation=kappa)))
     c0 = math.sqrt(STEEL.E / STEEL.density)
     assert 1.0 - impact.restitution**2 == pytest.approx(1.04 * (1.0 / c0) ** 0.6, rel=0.1)
+    # the force ends where the waves would pull: they take no more than the metal gives
+    assert abs(impact.energy_residual) < 1e-9
 
 
 def test_waves_beneath_a_plate_that_gives_way_take_energy_and_give_none() -> None:
@@ -191,6 +195,33 @@ def test_waves_beneath_a_plate_that_gives_way_take_energy_and_give_none() -> Non
     impact = strike(scene)
     assert impact.radiated_J > 0.0
     assert abs(impact.energy_residual) < 1e-8
+
+
+def test_waves_of_a_plate_that_gives_way_go_by_the_rate_that_it_leaves() -> None:
+    """F exceeds Hertz's by kappa (dF/d(depth))^2 d', d' that of both surfaces together."""
+    kappa, support = 200.0 * half_space_radiation(STEEL), plate_support(STEEL, thickness=0.004)
+    scene = sphere_on(support, speed=1.0)
+    trace = traced(scene.with_(force=type(scene.force)(radiation=kappa)), points=4000)
+    t, once = np.unique(trace.column("time_s"), return_index=True)
+    depth, force = (trace.column(name)[once] for name in ("penetration_m", "normal_force_N"))
+    K = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(0.01)
+    down = (t < t[np.argmax(depth)]) & (depth > 0.2 * depth.max()) & (depth < 0.9 * depth.max())
+    waves = force - K * depth**1.5
+    expected = kappa * (1.5 * K) ** 2 * depth * np.gradient(depth, t)
+    assert waves[down] == pytest.approx(expected[down], rel=0.01)
+    assert waves[down].min() > 0.01 * force.max()
+
+
+@pytest.mark.parametrize(("share", "back"), [(0.1, 1.0), (0.575, 1.0 / math.pi), (1.0, 0.0)])
+def test_a_plate_bends_as_far_as_its_wave_is_back_within_the_contact(share, back) -> None:
+    """From 0.15 of the contact to all of it a half-sine of force meets itself, later by the way."""
+    scene = sphere_on(Support(), speed=1.0)
+    K = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(0.01)
+    contact = 2.943 * (1.25 * scene.striker.mass / K) ** 0.4
+    h = 0.5 * share * contact * math.sqrt(0.7 / (1.3 * 0.4) * STEEL.E / STEEL.density)
+    found = HalfSpaceWaves().attach(scene, {"wave_scale": 1.0}, Surroundings(thickness=h))
+    whole = plate_support(STEEL, thickness=h).plate_mobility
+    assert found.support.plate_mobility / whole == pytest.approx(back, abs=2e-3)
 
 
 def test_a_growing_dent_sends_waves_by_the_slope_of_its_own_force() -> None:

@@ -21,7 +21,8 @@ def half_sine(samples: int) -> dict[str, np.ndarray]:
 
 def test_force_of_a_half_sine() -> None:
     found = from_trace(half_sine(600))
-    assert found["peak_force_N"] == pytest.approx(PEAK, rel=4e-3)
+    # the parabola through what exceeds 85 % of it: (acos 0.85)^4/24 3/35 = 3.4e-4 at its top
+    assert found["peak_force_N"] == pytest.approx(PEAK, rel=6e-4)
     assert found["normal_impulse_Ns"] == pytest.approx(2.0 * PEAK * T / math.pi, rel=3e-3)
     assert found["loading_time_s"] == pytest.approx(0.5 * T, rel=5e-3)
     # the foot of the recovery is drawn as Hertz's 3/2 power, so a sine's end comes out late

@@ -23,6 +23,9 @@ def test_whole_strikers_speeds_and_angles_are_left_out(toy) -> None:
 def test_where_nothing_varies_single_conditions_are_left_out(toy) -> None:
     given = toy.problem([0.0] * 3, speeds=[1.0, 1.001, 1.002])
     assert [np.flatnonzero(m).tolist() for m in groups_of(given)] == [[0], [1], [2]]
+    # ln v/0.15 = 0, 0.3 and 1.2
+    given = toy.problem([0.0] * 3, speeds=[1.0, 1.05, 1.2])
+    assert [np.flatnonzero(m).tolist() for m in groups_of(given)] == [[0, 1], [2]]
 
 
 def test_cells_that_share_nothing_are_missed_by_their_residual(toy) -> None:

@@ -33,13 +33,17 @@ def test_only_what_varies_is_a_covariate(toy, located) -> None:
     assert found["impact speed"] == pytest.approx(np.array([-3.0, -1.0, 1.0, 3.0]) / np.sqrt(5.0))
 
 
-def test_a_miss_everywhere_is_a_miss_overall(located) -> None:
+def test_a_miss_everywhere_is_a_miss_overall(toy, located) -> None:
     (miss,) = located([3.0, 3.0, 3.0, 3.0]).misses
     # the sum over the square root of their number
     assert (miss.covariate, miss.trend) == ("overall", "recordings lie above the simulation")
     assert miss.z == pytest.approx(6.0, rel=0.05)
     (below,) = located([-3.0, -3.0, -3.0, -3.0]).misses
     assert below.trend == "recordings lie below it"
+    # null residuals twice as wide: half the score
+    given = toy.problem([3.0] * 4, speeds=SPEEDS, rig=toy.rig_of(ball=BALL))
+    (half,) = locate(given, toy.fit_of([3.0] * 4), toy.nulls_of(2.0 * UNIT)).misses
+    assert half.z == pytest.approx(3.0, rel=0.05)
 
 
 def test_a_slope_is_a_miss_along_its_condition(located) -> None:

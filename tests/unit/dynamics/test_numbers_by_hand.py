@@ -84,6 +84,13 @@ def test_a_table_of_strengths_has_four_nodes_to_a_factor_of_four():
     assert depth[4] / depth[0] == pytest.approx(10.0**0.6)
 
 
+def test_the_work_of_a_table_is_two_fifths_of_hertzs_force_times_depth():
+    table = strength_table(LAWS["hertz"], Pair(HARD, STEEL, 5e-3))
+    force = LAWS["hertz"].loading(table.pair, table.depth)
+    assert table.work == pytest.approx(0.4 * force * table.depth, rel=1e-9)
+    assert table.peak(float(table.work[20])) == pytest.approx(table.depth[20], rel=1e-9)
+
+
 def imprint(at):
     return Imprint(at, at, at - 1e-4, at + 1e-4, at, 1e-6, 1e-5, 1e-4, 0.5)
 

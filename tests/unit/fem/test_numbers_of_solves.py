@@ -234,6 +234,17 @@ def test_a_gap_is_fitted_over_five_elements_at_161_edges(monkeypatch) -> None:
     assert seen == [(161, 5 * 2)]
 
 
+def test_a_gap_that_bends_back_is_fitted_by_its_kink_alone() -> None:
+    """Of g = 0.1 s - 0.003 s^1.5 the bend is no contact's: the line nearest by relative weight."""
+    edge, r = 5.3, np.linspace(6.0, 11.0, 60)
+    s = r - edge
+    g = 0.1 * s - 0.003 * s**1.5
+    weight = 1.0 / (s + 0.1 * s.max())
+    alpha = np.sum(s * weight * g * weight) / np.sum((s * weight) ** 2)
+    misfit = np.sum(((alpha * s - g) * weight) ** 2)
+    assert measure._misfits(np.array([edge]), r, g) == pytest.approx([misfit], rel=1e-9)
+
+
 def test_rings_have_four_divisions_and_grow_by_a_quarter() -> None:
     """Rungs of a quarter of a fine ring: beyond the zone 5, 6, 7, 8, 10, 12, 15 and 18 of them."""
     fine = 1e-3

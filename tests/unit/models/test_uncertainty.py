@@ -11,6 +11,9 @@ from dentscope.fitting import read_sources, tables_of
 from dentscope.fitting.calibrate import misses, within
 from dentscope.fitting.prediction import predict_by
 from dentscope.models import LAWS, Uncertainty, critical_depth
+from dentscope.models.closed_form import plastic_depth, small_radius_at
+from dentscope.models.fitted import bodies_of
+from dentscope.models.uncertainty import FEATURES, features_of
 
 DATA = Path(__file__).resolve().parents[3] / "data"
 PAIR = Pair(Material(E=71.7e9, nu=0.33, Sy=300e6), Material(E=200e9, nu=0.3, Sy=500e6), 1e-3)
@@ -68,6 +71,25 @@ def test_elastic_and_rigid_pairs_have_one_too():
         ours = LAWS["fitted"].uncertainty(pair, [0.0, 1e-6])
         theirs = beside_fitted(LAWS["jackson-green"], pair, [0.0, 1e-6])
         assert all(np.all(np.isfinite(size)) for size in (*ours, *theirs))
+
+
+def test_features_by_hand():
+    """Sy* = e^0.2: half as close as equal strengths; a/R = a_t e^0.25: half taken over."""
+    found = LAWS["fitted"].numbers(bodies_of([PAIR]))
+    numbers = type(found)(*(float(np.ravel(x)[0]) for x in found))
+    y = plastic_depth(numbers.W * 0.01)
+    small = small_radius_at(0.01, y, numbers)
+    even = numbers._replace(L=0.2, L_C=0.05, x_s=0.72, W=math.exp(12.4), a_t=1.0)
+    found = dict(zip(FEATURES, features_of(even, 0.01), strict=True))
+    assert found["equal"] == pytest.approx(0.5)
+    assert found["unlike"] == pytest.approx(0.5)
+    assert found["elastic_share"] == pytest.approx(1.0)
+    assert found["stiffness"] == pytest.approx(1.0)
+    turning = numbers._replace(L=0.7, a_t=small * math.exp(0.25))
+    found = dict(zip(FEATURES, features_of(turning, 0.01), strict=True))
+    assert found["taking_over"] == pytest.approx(0.25)
+    assert (found["one"], math.exp(5.0 * found["depth"])) == pytest.approx((1.0, 1.0 + y))
+    assert found["yield"] == pytest.approx(math.log(y / (1.0 + y)))
 
 
 def test_a_published_law_states_none():
