@@ -238,6 +238,10 @@ def test_friction_s_tangent_is_the_derivative_of_its_forces(grids, flat_is_slave
     n = 2 * mesh.n_sphere_points
     assert force[1:n:2].sum() == pytest.approx(-force[n + 1 :: 2].sum(), rel=1e-12)
     assert contact.force == pytest.approx(-force[1:n:2].sum(), rel=1e-12)
+    # of springs in both directions
+    stress = contact.pressure**2 + np.where(active, contact.traction, 0.0) ** 2
+    stored = 0.5 * np.sum(surfaces.mass * stress / surfaces.stiffness)
+    assert contact.energy == pytest.approx(stored, rel=1e-9)
     direction = rng.normal(0.0, 1.0, x.shape)
     direction[axis, 0] = 0.0
     change = np.zeros(x.size)
