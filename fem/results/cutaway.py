@@ -44,8 +44,9 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
             plotter.add_mesh(
                 face, scalars=_LABEL, cmap="turbo", clim=limits, lighting=False,
                 scalar_bar_args={
-                    "title": _LABEL, "color": "black", "n_labels": 5, "fmt": "%.2f", "width": 0.6,
-                    "position_x": 0.2, "position_y": 0.03, "title_font_size": 20,
+                    # a blank line, or its words stand on the numbers
+                    "title": f"{_LABEL}\n", "color": "black", "n_labels": 5, "fmt": "%.2f",
+                    "width": 0.6, "position_x": 0.2, "position_y": 0.03, "title_font_size": 20,
                     "label_font_size": 18,
                 },
             )  # fmt: skip

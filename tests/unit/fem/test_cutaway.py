@@ -26,3 +26,6 @@ def test_the_cut_shows_both_bodies_and_their_stresses(tmp_path):
     assert np.mean(colour > 0.5) > 0.1
     assert np.mean((colour < 0.1) & (image.max(axis=2) < 0.95)) > 0.05
     assert np.mean(image.min(axis=2) > 0.99) > 0.1
+    # the scale: its words, its numbers and its colours, a blank between them
+    drawn = image[860:].min(axis=(1, 2)) < 0.9
+    assert np.count_nonzero(np.diff(drawn.astype(int)) == 1) == 3
