@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .page import page, write_report
+from .sentences import headline, lines
 from .story import Story, story_of
-from .text import headline, lines
 
 __all__ = ["Story", "headline", "lines", "page", "story_of", "write_report"]

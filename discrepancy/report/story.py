@@ -13,8 +13,8 @@ from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
 from .next_session import change_lines, next_lines
+from .sentences import STORY_LEAST, headline, held, nowhere, own_parameters, predicted, why
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
-from .text import STORY_LEAST, headline, held, nowhere, own_parameters, predicted, why
 from .wording import explanation, interval, miss_sentences, number_name, percent, quantity, title_of
 
 # limit: explanations of a picture [-]: a screen

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Array
-from ...fitting.craters import PLACES, Body, Left, crater_shape
+from ...fitting.crater_shape import PLACES, Body, Left, crater_shape
 from ...models.turned import TurnedLaw
 from ..result import Impact
 from ..scene import Scene

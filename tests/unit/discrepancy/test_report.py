@@ -12,6 +12,7 @@ from dentscope.discrepancy.findings import WrongInput
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
+from dentscope.discrepancy.report.sentences import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.series import (
     STATED,
     WITH,
@@ -21,7 +22,6 @@ from dentscope.discrepancy.report.series import (
     points_of,
 )
 from dentscope.discrepancy.report.story import FORM, _doubt, _took
-from dentscope.discrepancy.report.text import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
 from dentscope.discrepancy.unknowns.nuisances import Nuisance
 from dentscope.discrepancy.unknowns.wrong_number import WrongNumber, WrongReading

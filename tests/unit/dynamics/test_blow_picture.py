@@ -6,7 +6,7 @@ import pytest
 from dentscope.dynamics.told.crater import surfaces_left
 from dentscope.dynamics.told.picture import picture
 from dentscope.dynamics.told.rig_shape import rig_shape
-from dentscope.fitting.craters import crater_shape
+from dentscope.fitting.crater_shape import crater_shape
 from dentscope.models import LAWS
 from made_blows import blow
 
@@ -91,7 +91,7 @@ def test_a_crater_has_the_band_of_its_depth_and_none_without_errors():
 
 
 def _left(impact, surface):
-    from dentscope.fitting.craters import Left
+    from dentscope.fitting.crater_shape import Left
 
     peak = impact.spot.imprints[0].peak
     return Left(surface.radius, peak, impact.residual_sphere_m, impact.residual_flat_m)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.fitting import craters
-from dentscope.fitting.craters import PLACES, Left, crater_shape
+from dentscope.fitting import crater_shape as craters
+from dentscope.fitting.crater_shape import PLACES, Left, crater_shape
 from dentscope.models import LAWS
 
 
