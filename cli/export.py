@@ -175,7 +175,7 @@ def _speeds(text: str) -> list[float]:
     """Read `0.1:10` as a range, `1,2,5` as they are; refuse what no speed may be."""
     import numpy as np
 
-    from ..core.rig import SPEEDS
+    from ..core.inputs.ranges import SPEEDS
 
     try:
         numbers = [float(x) for x in text.replace(":", ",").split(",")]

@@ -89,9 +89,9 @@ class Material:
 
         Raises `InputError`: in place of a number in SI units one that is of a metal in another.
         """
-        from .rig import changed  # which is made of this
+        from .inputs.ranges import in_si  # with numpy
 
-        return replace(self, **changed(self, changes))
+        return replace(self, **in_si(self, changes))
 
     def strengthened(self, factor: float) -> Self:
         """Return the body with so many times its strength, its flow curve with it."""

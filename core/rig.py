@@ -8,8 +8,7 @@ speak the same language. A value that the file leaves out is `None`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
@@ -23,19 +22,23 @@ from pydantic import (
     model_validator,
 )
 
-from .arrays import one_number
 from .errors import InputError
 from .inputs.materials import Mistyped, filled, unlisted
 from .inputs.names import FileName
+from .inputs.ranges import (
+    DENSITIES,
+    MODULI,
+    RADII,
+    SPEEDS,
+    STRENGTHS,
+    Within,
+    span,
+)
 from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
 from .inputs.toml_input import InputTable
 from .material import Material
 from .observables import GAUGE_KEYS, NOISE_KEYS
 from .rules import RULES
-
-# limit: largest standard deviation over a value that is stated [-]; what is known within e^100
-# either way is not known: leave it out
-LEAST_KNOWN = 100.0
 
 Number = Annotated[float, Field(strict=True)]
 
@@ -97,63 +100,19 @@ def quantities(table: InputTable, prefix: str = "") -> dict[str, float]:
     return {f"{prefix}{k}": q.value for k, q in given.items() if isinstance(q, Quantity)}
 
 
-@dataclass(frozen=True)
-class Within:
-    """Accepts quantities of a range; says which in `allowed`, for errors and the reference."""
-
-    accept: Callable[[float], bool]
-    allowed: str
-    units: tuple[tuple[str, float], ...] = ()
-
-    def __call__(self, quantity: Quantity) -> Quantity:
-        """Return the quantity if it lies in the range."""
-        if wanted := self.wanted(quantity.value):
-            raise ValueError(wanted)
-        if quantity.relative > LEAST_KNOWN:
-            raise ValueError(f"a std of at most {LEAST_KNOWN:g} times the value")
-        return quantity
-
-    def wanted(self, value: float) -> str:
-        """Return what is allowed, and the unit perhaps meant; empty for a value in the range."""
-        return "" if self.accept(value) else f"{self.allowed}{self.asked(value)}"
-
-    def asked(self, value: float) -> str:
-        """Return the unit that was perhaps meant of a value outside the range, or ""."""
-        for unit, factor in self.units:
-            if self.accept(factor * value):
-                return f"; {value:g} {unit} would be {factor * value:g}"
-        return ""
-
-
 def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
     return AfterValidator(Within(accept, allowed))
 
 
-def _range(low: float, high: float, **units: float) -> Within:
-    """A range that every real body keeps; a number outside it is mostly in another unit."""
-    allowed = f"a number from {low:g} to {high:g}"
-    return Within(lambda x: low <= x <= high, allowed, tuple(units.items()))
-
-
 def _between(low: float, high: float, **units: float) -> AfterValidator:
-    return AfterValidator(_range(low, high, **units))
+    return AfterValidator(span(low, high, **units))
 
-
-STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
-"""Of any stress at which a metal flows [Pa]."""
-STRAINS = _range(0.0, 3.0, **{"%": 1e-2})
-"""Of measured plastic strains: torsion reaches the largest."""
-SPEEDS = _range(1e-9, 2e4, **{"mm/s": 1e-3})
-"""Of any approach [m/s]."""
-RADII = _range(1e-9, 3.0, mm=1e-3, um=1e-6)
-_MODULI = _range(1e3, 2e12, GPa=1e9, MPa=1e6)
-_DENSITIES = _range(25.0, 25e3, **{"g/cm^3": 1e3})
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
-Modulus = Annotated[Quantity, AfterValidator(_MODULI)]
+Modulus = Annotated[Quantity, AfterValidator(MODULI)]
 Strength = Annotated[Quantity, AfterValidator(STRENGTHS)]
-Density = Annotated[Quantity, AfterValidator(_DENSITIES)]
+Density = Annotated[Quantity, AfterValidator(DENSITIES)]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
 Radius = Annotated[Quantity, AfterValidator(RADII)]
 SeatRadius = Annotated[
@@ -260,21 +219,6 @@ def material_keys(body: Material) -> dict[str, float | bool]:
         return {"rigid": True}
     strength = {"Sy_Pa": body.Sy} if math.isfinite(body.Sy) else {}
     return {"E_Pa": body.E, "nu": body.nu, **strength}
-
-
-def changed(body: Material, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return changes of a body, numbers as such; refuse what would take it out of SI units."""
-    found = dict(changes)
-    for name, known in (("E", _MODULI), ("Sy", STRENGTHS), ("density", _DENSITIES)):
-        if name not in changes:
-            continue
-        key = "density_kg_m3" if name == "density" else f"{name}_Pa"
-        now = found[name] = one_number(changes[name], source="Material", key=key)
-        was = getattr(body, name)
-        in_si = known.accept(was) or not math.isfinite(was)
-        if in_si and not known.accept(now) and known.asked(now):
-            raise InputError(f"{now:g}", source="Material", key=key, allowed=known.wanted(now))
-    return found
 
 
 TABOR = 2.8

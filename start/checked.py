@@ -13,10 +13,11 @@ from ..core.arrays import numbers, one_number
 from ..core.errors import InputError
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.materials import entry_named
+from ..core.inputs.ranges import RADII, STRAINS, STRENGTHS
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import RADII, STRAINS, STRENGTHS, MaterialTable, material_keys, quantities
+from ..core.rig import MaterialTable, material_keys, quantities
 from .case_file import read_flow_curve
 
 FlowLike = Flow | FlowCurve | str | Path | ArrayLike

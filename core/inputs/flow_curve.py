@@ -12,9 +12,9 @@ from ..arrays import Array, Indices
 from ..errors import InputError, InputErrors
 from ..flow import FlowCurve, tabulated
 from ..output import csv_text
-from ..rig import STRAINS, STRENGTHS
 from ..rules import RULES
 from .csv_table import Problems, numbers, read_text_table
+from .ranges import STRAINS, STRENGTHS
 
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
 """The last two are optional."""

@@ -11,8 +11,9 @@ from typing import Any, Literal
 from pydantic import Field, field_validator
 
 from ...core.errors import InputError, InputErrors
+from ...core.inputs.ranges import LEAST_KNOWN
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import LEAST_KNOWN, Length, Mass, Positive, Radius, possible_inertia
+from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
 from ...core.unstated import unstated_equal
 from ..inverse import INFERRED, Inferred, MeasuredScar, infer
 from ..scene import Striker

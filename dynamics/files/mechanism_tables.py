@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import AfterValidator, ConfigDict, Field, create_model, model_validator
 
 from ...core.errors import InputError
+from ...core.inputs.ranges import Within
 from ...core.inputs.toml_input import InputTable, table_in
-from ...core.rig import Quantity, Within, value_of
+from ...core.rig import Quantity, value_of
 from ..mechanisms import MECHANISMS
 from ..mechanisms.around import surroundings_of
 from ..mechanisms.asked import NONE_ASKED, Asked

@@ -40,7 +40,7 @@ from .onset import largest_mean_pressure
 if TYPE_CHECKING:
     from ..files.setup import Setup
 
-from ...core.rig import LEAST_KNOWN
+from ...core.inputs.ranges import LEAST_KNOWN
 
 # limit: largest error of a law, of a logarithm [-]; beyond it a law is off by a factor
 _LARGEST_ERROR = 1.0

@@ -1,0 +1,79 @@
+"""Ranges that numbers of real bodies keep, and the units that those outside may be meant in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..arrays import one_number
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..material import Material
+    from ..rig import Quantity
+
+# limit: largest standard deviation over a value that is stated [-]; what is known within e^100
+# either way is not known: leave it out
+LEAST_KNOWN = 100.0
+
+
+@dataclass(frozen=True)
+class Within:
+    """Accepts quantities of a range; says which in `allowed`, for errors and the reference."""
+
+    accept: Callable[[float], bool]
+    allowed: str
+    units: tuple[tuple[str, float], ...] = ()
+
+    def __call__(self, quantity: Quantity) -> Quantity:
+        """Return the quantity if it lies in the range."""
+        if wanted := self.wanted(quantity.value):
+            raise ValueError(wanted)
+        if quantity.relative > LEAST_KNOWN:
+            raise ValueError(f"a std of at most {LEAST_KNOWN:g} times the value")
+        return quantity
+
+    def wanted(self, value: float) -> str:
+        """Return what is allowed, and the unit perhaps meant; empty for a value in the range."""
+        return "" if self.accept(value) else f"{self.allowed}{self.asked(value)}"
+
+    def asked(self, value: float) -> str:
+        """Return the unit that was perhaps meant of a value outside the range, or ""."""
+        for unit, factor in self.units:
+            if self.accept(factor * value):
+                return f"; {value:g} {unit} would be {factor * value:g}"
+        return ""
+
+
+def span(low: float, high: float, **units: float) -> Within:
+    """Return a range that every real body keeps; a number outside it is mostly in another unit."""
+    allowed = f"a number from {low:g} to {high:g}"
+    return Within(lambda x: low <= x <= high, allowed, tuple(units.items()))
+
+
+STRENGTHS = span(1e3, 5e11, MPa=1e6, GPa=1e9)
+"""Of any stress at which a metal flows [Pa]."""
+STRAINS = span(0.0, 3.0, **{"%": 1e-2})
+"""Of measured plastic strains: torsion reaches the largest."""
+SPEEDS = span(1e-9, 2e4, **{"mm/s": 1e-3})
+"""Of any approach [m/s]."""
+RADII = span(1e-9, 3.0, mm=1e-3, um=1e-6)
+MODULI = span(1e3, 2e12, GPa=1e9, MPa=1e6)
+DENSITIES = span(25.0, 25e3, **{"g/cm^3": 1e3})
+
+
+def in_si(body: Material, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return changes of a body, numbers as such; refuse what would take it out of SI units."""
+    found = dict(changes)
+    for name, known in (("E", MODULI), ("Sy", STRENGTHS), ("density", DENSITIES)):
+        if name not in changes:
+            continue
+        key = "density_kg_m3" if name == "density" else f"{name}_Pa"
+        now = found[name] = one_number(changes[name], source="Material", key=key)
+        was = getattr(body, name)
+        stated = known.accept(was) or not math.isfinite(was)
+        if stated and not known.accept(now) and known.asked(now):
+            raise InputError(f"{now:g}", source="Material", key=key, allowed=known.wanted(now))
+    return found
