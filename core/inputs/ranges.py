@@ -37,14 +37,10 @@ class Within:
 
     def wanted(self, value: float) -> str:
         """Return what is allowed, and the unit perhaps meant; empty for a value in the range."""
-        return "" if self.accept(value) else f"{self.allowed}{self.asked(value)}"
-
-    def asked(self, value: float) -> str:
-        """Return the unit that was perhaps meant of a value outside the range, or ""."""
-        for unit, factor in self.units:
-            if self.accept(factor * value):
-                return f"; {value:g} {unit} would be {factor * value:g}"
-        return ""
+        if self.accept(value):
+            return ""
+        meant = ((unit, times * value) for unit, times in self.units if self.accept(times * value))
+        return self.allowed + next((f"; {value:g} {u} would be {x:g}" for u, x in meant), "")
 
 
 def span(low: float, high: float, **units: float) -> Within:
@@ -72,8 +68,7 @@ def in_si(body: Material, changes: Mapping[str, Any]) -> dict[str, Any]:
             continue
         key = "density_kg_m3" if name == "density" else f"{name}_Pa"
         now = found[name] = one_number(changes[name], source="Material", key=key)
-        was = getattr(body, name)
-        stated = known.accept(was) or not math.isfinite(was)
-        if stated and not known.accept(now) and known.asked(now):
-            raise InputError(f"{now:g}", source="Material", key=key, allowed=known.wanted(now))
+        was, wanted = getattr(body, name), known.wanted(now)
+        if (known.accept(was) or not math.isfinite(was)) and wanted not in ("", known.allowed):
+            raise InputError(f"{now:g}", source="Material", key=key, allowed=wanted)
     return found

@@ -338,8 +338,8 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
     speed, height = impact.impact_speed_m_s, impact.drop_height_m
     if (speed is None) == (height is None):
-        told = "give one of speed and height" + ", not both" * (speed is not None)
-        add("impact.impact_speed_m_s", told, "or impact.drop_height_m")
+        told = "missing" if speed is None else "given beside impact.drop_height_m"
+        add("impact.impact_speed_m_s", told, "this or impact.drop_height_m, one of the two")
     if found.gravity_m_s2.value == 0.0:
         for table, fall in (("impact", height), ("sweep", found.sweep.drop_height_m or None)):
             if fall is not None:
