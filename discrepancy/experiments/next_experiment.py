@@ -215,6 +215,8 @@ def _settling(new: _Plan) -> None:
         kind = _BY.get(word, "")
         if not kind or math.isnan(minutes := takes(problem.bench, kind)):
             continue
+        if kind == "hardness" and f"{body}.hardness_Pa" in problem.rig.of:
+            continue  # it was tested
         of = "the flat" if body == "target" else body.removeprefix("strikers.")
         if second_of(problem.rig) is not None and body == "target":
             of = "the second sphere"

@@ -23,6 +23,7 @@ def check_strength(found: RecordingSet) -> Iterator[Finding]:
     severity = Severity.CAUTION if z > 2.0 else Severity.CONSISTENT
     if severity is Severity.CAUTION:
         text += ": one of both is wrong, or the metal hardens; Sy_Pa alone is used"
+        text += ", the hardness where Sy_Pa is left out"
     yield Finding("hardness of the target against its strength", severity, text, ratio, TABOR, z)
 
 

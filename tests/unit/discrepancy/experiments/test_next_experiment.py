@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from dentscope.discrepancy.experiments.foreseen import (
 )
 from dentscope.discrepancy.experiments.next_experiment import (
     _not_measured,
+    _settling,
     _sharper,
     propose,
     rivals_of,
@@ -223,6 +225,15 @@ def test_what_the_rig_cannot_do_is_not_proposed(toy, monkeypatch) -> None:
     idle = {**BALL, "tip_radius_m": 0.02}
     found = candidates_of(on_rig(toy, ball=BALL, larger=idle))
     assert [c.like for c in found if c.condition.striker == "larger"] == ["ball"] * 5
+
+
+def test_a_hardness_that_is_stated_is_not_tested_again(toy) -> None:
+    rig = toy.rig_of(ball={**BALL, "hardness_Pa": 2e9}, larger=BALL)
+    both = [SimpleNamespace(name=f"strikers.{name}.Sy_Pa") for name in ("ball", "larger")]
+    given = SimpleNamespace(nuisances=both, wrong_numbers=(), bench=Bench(), rig=rig)
+    plan = SimpleNamespace(problem=given, cells=[], settled=[], options=[])
+    _settling(plan)
+    assert [one.key for one in plan.settled] == ["strikers.larger.Sy_Pa"]
 
 
 def test_greedy_is_nearly_as_good_as_all_that_could_be_chosen() -> None:
