@@ -63,14 +63,12 @@ class Material:
                 allowed="a number above 0, or left out for a purely elastic body",
             )
         if self.flow is not None:
-            if not hasattr(self.flow, "curve"):
-                raise InputError(
-                    repr(self.flow), key="flow",
-                    allowed="a core.flow.Flow; dentscope.Material(flow=...) reads files and rows",
-                )  # fmt: skip
             self._check_flow(self.flow)
 
     def _check_flow(self, flow: Flow) -> None:
+        if not hasattr(flow, "curve"):
+            allowed = "a core.flow.Flow; dentscope.Material(flow=...) reads files and rows"
+            raise InputError(repr(flow), key="flow", allowed=allowed)
         if math.isinf(self.Sy):
             raise InputError("missing", key="Sy_Pa", allowed="a strength where a flow law is given")
         if flow.curve is not None and abs(flow.curve.strength / self.Sy - 1.0) > 1e-9:
