@@ -45,20 +45,17 @@ def finite(x: float) -> float | None:
     return x if math.isfinite(x) else None
 
 
-def scores_of(
-    ranking: Ranking, p: Mapping[str, float], left_out: Mapping[str, HeldOut]
-) -> dict[str, dict[str, float]]:
+def scores_of(ranking: Ranking, left_out: Mapping[str, HeldOut]) -> dict[str, dict[str, float]]:
     """Return evidence over the baseline, held-out miss, p of fit and chi2 of every explanation.
 
-    `p`, `left_out`: for each fit by name, how it passes the test of fit and predicts left-out
-    conditions.
+    `left_out`: for each fit by name, how it predicts left-out conditions.
     """
     base = ranking.base.log_evidence
     return {
         f.name: {
             "evidence": f.log_evidence - base,
             "held_out": left_out[f.name].rms,
-            "p_value": p[f.name],
+            "p_value": f.p_value,
             "chi2": f.chi2,
         }
         for f in ranking.fits

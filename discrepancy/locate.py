@@ -5,7 +5,7 @@ tested: a constant, or a slope along the condition, each cell weighted by how su
 is what the residual has along the contrast over the standard deviation that noise, nuisances and
 the law's error give it there, by themselves: an observable that agrees has no score, though a
 nuisance that would repair another one moved it too. The largest score of all is compared with that
-of the null residuals.
+of sets in which nothing is missing.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.observables import OBSERVABLES
-from .choice.thresholds import Nulls
 from .comparison.problem import Problem
 from .inference.fit import Fit
+from .rules import RULES
 from .unknowns.covariates import covariates
 
 ORDER = "order of testing"
@@ -65,12 +65,12 @@ class Located:
 
 
 def locate(
-    problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95, least: int = 0
+    problem: Problem, base: Fit, rng: np.random.Generator, *, level: float = 0.95, least: int = 0
 ) -> Located:
     """Test every cell of observable by covariate.
 
     - `problem`: what was compared.
-    - `nulls`: null residuals, for the threshold.
+    - `rng`: draws sets with nothing missing, for the threshold.
     - `level`: family-wise.
     - `least`: number of places that are told in any case: 1 where all numbers together say that
       something is missing, even if no contrast alone does.
@@ -79,13 +79,13 @@ def locate(
     names, contrasts = _contrasts(problem, 1.0 / np.diag(linear.total))
     size = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, linear.total, contrasts))
     score = contrasts @ base.residual / size
-    null = np.abs(nulls.made_by(base) @ contrasts.T / size)
-    spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
+    drawn = rng.standard_normal((RULES.nulls, len(base.residual)))
+    null = np.abs(drawn @ (contrasts @ linear.lower).T / size)
     found = [
         Miss(observable, covariate, _trend(covariate, z), float(z))
-        for (observable, covariate), z in zip(names, score / spread, strict=True)
+        for (observable, covariate), z in zip(names, score, strict=True)
     ]
-    threshold = float(np.quantile((null / spread).max(axis=1), level))
+    threshold = float(np.quantile(null.max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
     columns = [
         # the deviate that a normal variable exceeds as rarely, to first order in its logarithm

@@ -396,13 +396,9 @@ class DiagnosisRules:
     )  # fmt: skip
     law_length: float = rule(2.5, "correlation length of a law's error [ln(depth/R)]")
     nulls: int = rule(
-        500, "null sets that set the thresholds of a screening [-]",
-        "probabilities of 0.002 are told",
+        500, "sets with nothing missing, drawn for the threshold of where a baseline misses [-]",
+        "of one in twenty within a sixth",
     )  # fmt: skip
-    null_level: float = rule(
-        1.0, "standard deviation of a null law's level over the law's error [-]"
-    )
-    null_slope: float = rule(0.4, "the same of its slope over ln(depth) [-]")
     rim: float = rule(
         1.05, "diameter of a dent's rim over that of its contact circle [-]",
         "within what finite elements of metals from perfectly plastic to n = 0.3 give",
@@ -411,11 +407,6 @@ class DiagnosisRules:
         0.03, "standard deviation of the same [-]",
         "within what those finite elements give",
     )  # fmt: skip
-    null_steps: float = rule(
-        120.0, "time steps of a null impact to its turning point [-]",
-        "4e-5 in restitution, 2e-4 in force off the limit",
-    )  # fmt: skip
-    null_smooth: float = rule(0.01, "part of the approach speed below which friction fades [-]")
     assumed_modulus: float = rule(
         2e11, "modulus of a body of which the set says nothing [Pa]",
         "steel's",

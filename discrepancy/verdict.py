@@ -23,7 +23,6 @@ from .baseline.laws import LawChoice, Progress
 from .choice.decide import Choice, decide
 from .choice.odds import OUTSIDE, Odds, odds_of
 from .choice.pairs import with_pairs
-from .choice.thresholds import FitTest, Nulls, fit_test, null_residuals
 from .comparison.forward import Point, Simulator
 from .comparison.problem import problem_of
 from .comparison.units import with_units
@@ -33,7 +32,6 @@ from .findings import After, Verdict
 from .heldout import held_out
 from .locate import locate
 from .rank import Ranking, rank
-from .rules import RULES
 
 # limit: next experiments that a verdict keeps [-]: a screen
 _PROPOSED = 5
@@ -49,15 +47,6 @@ class _Asked(NamedTuple):
     seed: int
     rng: np.random.Generator
     progress: Progress
-
-
-class _Explained(NamedTuple):
-    """All explanations fitted, sets with nothing missing, and how each fits its own sets."""
-
-    simulator: Simulator
-    ranking: Ranking
-    nulls: Nulls
-    tests: dict[str, FitTest]
 
 
 @in_one_thread
@@ -91,9 +80,10 @@ def diagnose(
     progress("auditing the inputs")
     asked = _Asked(recordings, estimates.audit_rows(recordings), own, seed, rng, progress)
     simulator = Simulator(problem_of(recordings, law=law, assume=assume, progress=progress))
-    found = _explained(asked, simulator)
+    simulator, ranking = _explained(asked, simulator)
     progress("deciding")
-    verdict = _told(asked, found, *_decided(found, cautious=cautious))
+    odds = odds_of(ranking)
+    verdict = _told(asked, simulator, decide(ranking, odds, cautious=cautious), ranking, odds)
     if not history or not np.ptp(recordings.trials.sessions):
         return verdict
     return replace(verdict, history=_history(asked, verdict, law, assume))
@@ -109,33 +99,24 @@ def _history(
         asked.progress(f"what was known after session {session:g}")
         part = asked.recordings.take(sessions <= session)
         simulator = Simulator(problem_of(part, law=law, assume=assume))
-        _, odds = _decided(_explained(asked, simulator), cautious=False)
-        found.append(After(session, len(part.trials), dict(odds.probability)))
+        _, ranking = _explained(asked, simulator)
+        found.append(After(session, len(part.trials), dict(odds_of(ranking).probability)))
     return (*found, After(float(sessions.max()), len(sessions), verdict.probabilities))
 
 
-def _decided(found: _Explained, *, cautious: bool) -> tuple[Choice, Odds]:
-    beside = {name: one.log_odds for name, one in found.tests.items()}
-    odds = odds_of(found.ranking, beside=beside)
-    return decide(found.ranking, odds, cautious=cautious), odds
-
-
-def _explained(asked: _Asked, simulator: Simulator) -> _Explained:
+def _explained(asked: _Asked, simulator: Simulator) -> tuple[Simulator, Ranking]:
     """Fit the baseline, every wrong number and mechanism, and the pairs that gain by it."""
     simulator = simulator.of(with_units(simulator))
     library = (*MECHANISMS, *NAMELESS, *asked.own, *simulator.problem.wrong_numbers)
     ranking = rank(simulator, library, progress=asked.progress)
     simulator = simulator.of(ranking.problem)
-    ranking = with_pairs(simulator, ranking, progress=asked.progress)
-    asked.progress("simulating sets in which nothing is missing")
-    residuals = null_residuals(simulator, ranking.base, RULES.nulls, asked.rng)
-    tests = {f.name: fit_test(f, residuals) for f in ranking.fits}
-    return _Explained(simulator, ranking, residuals, tests)
+    return simulator, with_pairs(simulator, ranking, progress=asked.progress)
 
 
-def _told(asked: _Asked, found: _Explained, choice: Choice, odds: Odds) -> Verdict:
+def _told(
+    asked: _Asked, simulator: Simulator, choice: Choice, ranking: Ranking, odds: Odds
+) -> Verdict:
     """Locate the mismatch, predict what was left out, propose, and say it all."""
-    simulator, ranking, nulls, tests = found
     problem, base = ranking.problem, ranking.base
     asked.progress("predicting conditions that were left out")
     left_out = {f.name: held_out(problem, f) for f in ranking.fits}
@@ -145,13 +126,12 @@ def _told(asked: _Asked, found: _Explained, choice: Choice, odds: Odds) -> Verdi
     stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
     misfit = estimates.misfit_of(problem, base, stated)
     misses = int(choice.verdict not in ("adequate", "undetermined"))
-    p_values = {name: one.p_value for name, one in tests.items()}
     told = (*estimates.notes_of(problem, best), *estimates.law_notes(problem, misfit))
     return Verdict(
         name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
-        scores=estimates.scores_of(ranking, p_values, left_out),
-        located=locate(problem, base, nulls, least=misses),
+        scores=estimates.scores_of(ranking, left_out),
+        located=locate(problem, base, asked.rng, least=misses),
         parameters=estimates.parameters_of(simulator, best),
         nuisance_pulls={n.name: float(best.z[i]) for i, n in enumerate(problem.nuisances)},
         surprise=estimates.surprises_of(problem, best), excluded=ranking.excluded,

@@ -1,1 +1,1 @@
-"""From evidence to a verdict: odds, pairs, what stands outside, thresholds and costs."""
+"""From evidence to a verdict: odds, pairs, what stands outside, what is said."""

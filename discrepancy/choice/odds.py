@@ -58,13 +58,10 @@ class Odds:
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
-def odds_of(ranking: Ranking, *, beside: Mapping[str, float] | None = None) -> Odds:
+def odds_of(ranking: Ranking) -> Odds:
     """Return the probabilities of a ranking's explanations.
 
     A mechanism without a full fit counts by its screening.
-
-    - `beside`: ln Bayes factor of something that acts beside each fit, by how that fits: what a fit
-      that is bad loses by it, and what something outside has for each.
     """
     gained = gains(ranking)
     prior = Priors.of(ranking)
@@ -73,19 +70,7 @@ def odds_of(ranking: Ranking, *, beside: Mapping[str, float] | None = None) -> O
     for label, gain in gained.items():
         names[label] = members(label)
         log[label] = prior.log(names[label]) + tempered(gain)
-    beside = dict(beside or {})
-    for label in ranking.unfitted:
-        # fits as well as the better of the two, until it is fitted
-        own = [beside[name] for name in names[label] if name in beside]
-        beside[label] = min(own, default=0.0)
-    beside = {label: further(gained[label], odds) for label, odds in beside.items()}
-    unseen = [
-        log[label] + math.log(PRIORS[OUTSIDE]) + min(odds, 0.0) for label, odds in beside.items()
-    ]
-    for label, odds in beside.items():
-        log[label] -= max(odds, 0.0)
     log[OUTSIDE], alike = _outside(ranking, log)
-    log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *unseen]))
     total = float(logsumexp(list(log.values())))
     found = {k: math.exp(x - total) for k, x in sorted(log.items(), key=lambda item: -item[1])}
     return Odds(names, _supported(found), alike)
@@ -107,11 +92,6 @@ def tempered(gain: float) -> float:
     """Return what a gain in ln evidence counts [nat]."""
     G = RULES.by_ratio
     return RULES.temper * (G * math.log1p(gain / G) if gain > 0.0 else gain)
-
-
-def further(gain: float, more: float) -> float:
-    """Return what something gains beside an explanation with a gain: as `tempered` counts both."""
-    return tempered(gain + more) - tempered(gain) if more > 0.0 else more
 
 
 @dataclass(frozen=True)
@@ -184,8 +164,8 @@ def _shared(kind: str, weight: Mapping[str, float]) -> dict[str, float]:
 def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[str, float]]:
     """Ln weight of what no name covers, and what it is like, with shares of that weight.
 
-    A free departure of the baseline, or physics without a name; and, whatever the simulation says,
-    what repeats say of themselves.
+    A free departure of the baseline, or physics without a name; and, beside whatever explains the
+    rest, what repeats say of themselves.
     """
     base = ranking.base
     free = float(outside_of(ranking.problem, base).log_likelihood(base.residual))
@@ -196,11 +176,8 @@ def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[st
     whole = float(logsumexp(list(parts.values())))
     alike = {title: math.exp(x - whole) for title, x in parts.items() if title}
     prior = math.log(PRIORS[OUTSIDE])
-    seen, odd = prior + tempered(whole), odd_repeats(ranking.problem)
-    if not math.isfinite(odd):
-        return seen, alike
-    beside = float(logsumexp(list(log.values()))) + prior + odd
-    return float(np.logaddexp(seen, beside)), alike
+    beside = float(logsumexp(list(log.values()))) + odd_repeats(ranking.problem)
+    return prior + float(np.logaddexp(tempered(whole), beside)), alike
 
 
 def _supported(found: dict[str, float]) -> dict[str, float]:

@@ -44,12 +44,15 @@ def outside_of(problem: Problem, base: Fit) -> Mixture:
 
 
 def odd_repeats(problem: Problem) -> float:
-    """Ln odds, by the repeats alone, that something is outside which no simulation knows."""
+    """Ln odds, by the repeats alone, that something is outside which no simulation knows; from 0.
+
+    Where they say nothing, something may act unseen.
+    """
     found = [_worth(d.log_p) for d in problem.drifts]
     found += [_worth(f.log_p) for f in problem.followed]
     # in another unit than their noise, repeats scatter as they would
     found += [_of_scatter(s) for s in problem.scatters if s.observable not in problem.misread]
-    return max(found, default=-math.inf)
+    return max([0.0, *found])
 
 
 def _worth(log_p: float) -> float:

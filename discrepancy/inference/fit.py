@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import chdtrc
 
 from ...core.arrays import Array
 from ...dynamics.mechanisms.base import Mechanism, Situation
@@ -74,6 +75,11 @@ class Fit:
     def form(self) -> Array:
         """Posterior mean of each component of the mechanisms' form, (c,)."""
         return np.asarray(self.linear.form.T @ self.linear.solve(self.residual))
+
+    @property
+    def p_value(self) -> float:
+        """Probability that an explanation which is the truth fits no better than this one does."""
+        return float(chdtrc(max(len(self.residual) - len(self.place), 1), self.chi2))
 
     @property
     def name(self) -> str:

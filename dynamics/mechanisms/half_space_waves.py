@@ -51,7 +51,7 @@ class HalfSpaceWaves(Mechanism):
         scale, flat = values["wave_scale"], scene.pair.flat
         if flat.rigid:
             return scene
-        flat = flat.with_(density=density_of(flat))
+        flat = replace(flat, density=density_of(flat))
         # kappa goes with density^(1/2)/E^(3/2); the integral over the waves knows nu only
         one = _unit_radiation(flat.nu) * math.sqrt(flat.density) / flat.E**1.5
         kappa = scene.force.radiation + scale * one

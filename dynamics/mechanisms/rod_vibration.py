@@ -47,7 +47,7 @@ class _Ringing(Mechanism):
         striker, body = scene.striker, scene.pair.sphere
         if striker.length == 0.0 or body.rigid:
             return scene
-        modes = self.modes(striker, body.with_(density=density_of(body)))
+        modes = self.modes(striker, replace(body, density=density_of(body)))
         factor = math.sqrt(values["modal_participation"])
         return scene.with_(modes=modes.scaled(lambda x: factor * x))
 

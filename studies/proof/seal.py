@@ -19,7 +19,7 @@ _DATA_ENDINGS = {".json", ".toml", ".npz", ".h5"}
 
 
 def tree_hash(root: Path) -> str:
-    """SHA-256 of the tool's source tree without the proof, coefficients and thresholds included.
+    """SHA-256 of the tool's source tree without the proof, coefficients included.
 
     Every Python file of the package and every data file that the diagnosis reads from it, by path.
     """

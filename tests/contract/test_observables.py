@@ -7,9 +7,6 @@ import numpy as np
 import pytest
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy.comparison.cells import compared
-from dentscope.discrepancy.nulls.ensemble import press
-from dentscope.discrepancy.nulls.laws import NullCurve
-from dentscope.discrepancy.nulls.motion import NullBodies, collide
 from dentscope.dynamics.walk.layout import OBSERVABLES as SIMULATED
 from dentscope.recordings.columns import TRIAL_COLUMNS
 
@@ -112,15 +109,6 @@ def test_every_row_reaches_files_and_simulation():
         assert (name in TRIAL_COLUMNS) is row.in_trials
         if row.log:
             assert row.low == 0.0, "a logarithm of what may be negative"
-
-
-def test_null_laws_give_every_compared_number():
-    one, x = np.ones(1), np.linspace(-20.0, -5.0, 9)
-    curve = NullCurve(x, 1.5 * x + 23.0, *3 * [np.exp(x)], 1.5)
-    found = {"impact": collide(NullBodies(*11 * [one]), [curve]), "press": press(one, [curve])}
-    for event, given in found.items():
-        missing = {n for n, row in OBSERVABLES.items() if event in row.of} - set(given)
-        assert not missing, f"to be added to discrepancy/nulls: {event}"
 
 
 def test_units_for_people_follow_from_the_column():

@@ -26,7 +26,6 @@ EXACT = {
     "core/inputs/flow_curve.py": "PROOF_STRAIN",
     "core/output.py": "_DIGEST",
     "core/rig.py": "TABOR",
-    "discrepancy/choice/thresholds.py": "_LEAST_LOG_P",
     "dynamics/mechanisms/arithmetic.py": "_STEEL_DENSITY",
     "dynamics/mechanisms/contact_damping.py": "_REFERENCE_DEPTH",
     "dynamics/mechanisms/squeeze_film.py": "_CRITICAL_STOKES",

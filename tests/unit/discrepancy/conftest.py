@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 from dentscope.core.inputs.rig_numbers import RigNumbers
-from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.comparison.cells import Cells
 from dentscope.discrepancy.comparison.conditions import Condition
 from dentscope.discrepancy.inference.fit import Fit
@@ -162,11 +161,6 @@ def screened_of(effect: Effect, changes: Any) -> Screened:
     return Screened(effect, grid, np.zeros((0, 0)), np.array(changes, dtype=float), 0.0, np.ones(1))
 
 
-def nulls_of(scatter: Any) -> Nulls:
-    draws = np.array(scatter, dtype=float)
-    return Nulls(0.0 * draws, draws, np.zeros((len(draws), 0)), 0.0 * draws)
-
-
 def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) -> Ranking:
     return Ranking(given, base, base, tuple(screened), tuple(singles), tuple(pairs), {})
 
@@ -176,7 +170,7 @@ def toy() -> SimpleNamespace:
     return SimpleNamespace(
         rig_of=rig_of,
         Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
-        screened_of=screened_of, nulls_of=nulls_of, ranking_of=ranking_of,
+        screened_of=screened_of, ranking_of=ranking_of,
     )  # fmt: skip
 
 

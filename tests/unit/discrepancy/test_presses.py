@@ -10,8 +10,6 @@ from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.experiments.feasible import presses_of
 from dentscope.discrepancy.experiments.next_experiment import _options
 from dentscope.discrepancy.inference.fit import baseline_situations
-from dentscope.discrepancy.nulls.ensemble import press
-from dentscope.discrepancy.nulls.laws import NullCurve
 from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
 from dentscope.dynamics import Approach, strike
@@ -113,15 +111,6 @@ def test_a_press_is_read_as_the_rig_reads_and_a_strength_has_its_key(problem):
     pressed = [p.change for _, p in _options(Simulator(known)).options if p.kind == "press"]
     assert pressed
     assert not any("crater depth" in text for text in pressed)
-
-
-def test_null_laws_are_pressed_along_their_own_curve():
-    x = np.linspace(np.log(1e-6), np.log(1e-3), 50)
-    law = NullCurve(x, x + np.log(1e7), np.full(50, 2e-6), 0.8 * np.exp(x), np.exp(0.5 * x), 1.5)
-    found = press(np.array([100.0, 1000.0]), [law, law])
-    assert found["press_depth_m"] == pytest.approx([1e-5, 1e-4])
-    assert found["permanent_depth_m"] == pytest.approx([0.8e-5, 0.8e-4], rel=0.01)
-    assert found["recovered_depth_m"] == pytest.approx([2e-6, 2e-6])
 
 
 def test_rim_of_a_dent_is_an_unknown_of_its_own(problem):

@@ -11,7 +11,6 @@ from dentscope.discrepancy.choice.odds import (
     OUTSIDE,
     PRIORS,
     Odds,
-    further,
     odds_of,
     prior_shares,
     tempered,
@@ -237,35 +236,10 @@ def test_wrong_numbers_share_by_kind_and_the_struck_strength_has_most() -> None:
     assert strength / (one + two) == pytest.approx(RULES.strength_wrong)
 
 
-def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy) -> None:
-    ranking = singles_of(toy, 30.0, 29.0)
-    fits = odds_of(ranking, beside={"a": 0.0, "b": 0.0})
-    found = odds_of(ranking, beside={"a": math.log(200.0), "b": 0.0})
-    share = found.probability["a"] / found.probability["b"]
-    lost = math.exp(further(30.0, math.log(200.0)))
-    assert lost == pytest.approx(200.0**RULES.temper, rel=0.06)
-    assert share == pytest.approx(fits.probability["a"] / fits.probability["b"] / lost)
-    outside = PRIORS[OUTSIDE] * (lost * found.probability["a"] + found.probability["b"])
-    assert found.probability[OUTSIDE] == pytest.approx(outside, rel=1e-3)
-
-
-def test_what_little_an_explanation_of_thousands_leaves_counts_by_its_share() -> None:
-    assert further(RULES.by_ratio, 20.0) == pytest.approx(RULES.temper * 10.0, rel=0.01)
-    assert further(100.0 * RULES.by_ratio, 20.0) < 0.2
-    assert further(30.0, -0.7) == -0.7
-
-
-def test_a_pair_without_a_fit_counts_by_its_screening_and_fits_as_its_better_single(toy) -> None:
-    ranking = replace(singles_of(toy, 30.0, 29.0), unfitted={"a+b": 40.0})
-    one, refuted = (
-        odds_of(ranking, beside={"a": x, "b": y}).probability
-        for x, y in ((math.log(50.0), 0.0), (math.log(200.0), math.log(50.0)))
-    )
-    prior = PRIORS["second"] / 2.0
-    ratio = prior * math.exp(tempered(40.0) - tempered(29.0))
-    assert one["a+b"] / one["b"] == pytest.approx(ratio)
-    more = further(29.0, math.log(50.0)) - further(40.0, math.log(50.0))
-    assert refuted["a+b"] / refuted["b"] == pytest.approx(ratio * math.exp(more))
+def test_a_pair_without_a_fit_counts_by_its_screening(toy) -> None:
+    found = odds_of(replace(singles_of(toy, 30.0, 29.0), unfitted={"a+b": 40.0})).probability
+    ratio = PRIORS["second"] / 2.0 * math.exp(tempered(40.0) - tempered(29.0))
+    assert found["a+b"] / found["b"] == pytest.approx(ratio)
 
 
 def test_a_drift_that_is_sure_leaves_the_rest_to_something_outside(toy) -> None:

@@ -46,4 +46,5 @@ def test_a_drift_or_a_column_is_worth_what_its_p_value_can_be(toy, p) -> None:
     for given in ({"drifts": drifts}, {"followed": followed}):
         found = odd_repeats(toy.problem([0.0], **given))
         assert found == pytest.approx(-math.log(-math.e * p * math.log(p)))
-    assert odd_repeats(SimpleNamespace(drifts=(), scatters=(), followed=())) == -math.inf
+    # what is not seen may act all the same, with its prior
+    assert odd_repeats(SimpleNamespace(drifts=(), scatters=(), followed=())) == 0.0

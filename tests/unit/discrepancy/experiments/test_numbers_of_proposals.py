@@ -9,7 +9,6 @@ import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
 from dentscope.core.observables import OBSERVABLES
-from dentscope.discrepancy import verdict
 from dentscope.discrepancy.baseline.solve import solved_table
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
@@ -151,24 +150,6 @@ def test_twelve_draws_stand_for_a_rivals_parameters_and_256_for_the_noise(toy) -
     found = toy.fit_of([0.5], toy.Effect("a", (1.0,)))
     assert len(_samples(found, np.random.default_rng(0))) == 12
     assert _spread_out(2).shape == (256, 2)
-
-
-def test_a_verdict_draws_500_sets_in_which_nothing_is_missing(monkeypatch) -> None:
-    class Asked(Exception):
-        pass
-
-    def drawn(simulator, base, count, rng):
-        raise Asked(count)
-
-    ranked = SimpleNamespace(problem=None, base=None)
-    given = SimpleNamespace(problem=SimpleNamespace(wrong_numbers=()), of=lambda problem: given)
-    asked = SimpleNamespace(own=(), progress=lambda told: None, rng=None)
-    for name in ("rank", "with_pairs"):
-        monkeypatch.setattr(verdict, name, lambda *given, **more: ranked)
-    monkeypatch.setattr(verdict, "with_units", lambda simulator: None)
-    monkeypatch.setattr(verdict, "null_residuals", drawn)
-    with pytest.raises(Asked, match="500"):
-        verdict._explained(asked, given)
 
 
 def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:

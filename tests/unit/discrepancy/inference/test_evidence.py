@@ -173,3 +173,11 @@ def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
     # the level is that which is asked for
     half = parameters_of(SimpleNamespace(problem=SimpleNamespace(nuisances=())), fitted, 0.5)
     assert half["theta"]["high"] - theta == pytest.approx(wide * 0.6745 / 1.6449, rel=0.02)
+
+
+def test_p_of_a_fit_is_that_of_as_many_numbers_as_no_parameter_takes(toy) -> None:
+    # two cells: the square of their length is exponential of mean 2
+    assert toy.fit_of([3.0, 4.0]).p_value == pytest.approx(math.exp(-12.5))
+    # a parameter takes one up: the other is a normal variable
+    taken = toy.fit_of([25.0, 2.0], toy.Effect("size", (50.0, 0.0)))
+    assert taken.p_value == pytest.approx(2.0 * norm.sf(2.0))
