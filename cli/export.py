@@ -13,7 +13,7 @@ from .shared.places import folder_option, misused
 from .shared.terminal import new_console, say, show_table
 
 if TYPE_CHECKING:
-    from ..dynamics.told.discrete_elements import ExportedRow
+    from ..dynamics.export.discrete_elements import ExportedRow
     from ..models.base import ContactLaw
     from ..start.ball_file import ExportedBall
 
@@ -84,9 +84,9 @@ def export_dem(
 def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
     """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
-    from ..dynamics.told.band import too_deep
-    from ..dynamics.told.discrete_elements import HEAD, substitutes, table
-    from ..dynamics.told.lammps import lammps_lines
+    from ..dynamics.export.discrete_elements import HEAD, substitutes, table
+    from ..dynamics.export.lammps import lammps_lines
+    from ..dynamics.report.band import too_deep
     from ..models import law_named
     from ..models.choose import follows_flow
 
@@ -129,7 +129,7 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
 
 def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> dict[str, str]:
     """What the other programs read, by file."""
-    from ..dynamics.told import simulators as s
+    from ..dynamics.export import simulators as s
 
     contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
     speeds = [row.law.speed for row in rows]
@@ -144,7 +144,7 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
 
 def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[ExportedRow]:
     """Parameters for two such balls; none, with a line, where there are none."""
-    from ..dynamics.told.discrete_elements import substitutes, two_balls
+    from ..dynamics.export.discrete_elements import substitutes, two_balls
     from ..models.turned import similar
 
     if ball.second is not None:

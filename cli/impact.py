@@ -60,7 +60,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..dynamics.files.blow import blow_of
     from ..dynamics.files.setup import read_setup
     from ..dynamics.files.tables import write_hdf5
-    from ..dynamics.told.picture import picture
+    from ..dynamics.report.picture import picture
 
     console = new_console()
     setup = read_setup(path)
@@ -105,9 +105,9 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
-    from ..dynamics.told.band import MOST_SWEPT, swept_stds, too_deep
-    from ..dynamics.told.checks import swept_above_one, swept_walls
-    from ..dynamics.told.draw import draw_sweep, swept_in_vain
+    from ..dynamics.report.band import MOST_SWEPT, swept_stds, too_deep
+    from ..dynamics.report.checks import swept_above_one, swept_walls
+    from ..dynamics.report.draw import draw_sweep, swept_in_vain
 
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()

@@ -25,10 +25,10 @@ from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
 from .result import leave_resting
 from .scene import Approach, ForceTransform, Friction, Scene
+from .stepping import layout as c
 from .surface import NONE
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
-from .walk import layout as c
 
 BY_WORK, BY_STEPS = "work", "steps"
 """What the column `route` says."""

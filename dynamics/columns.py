@@ -93,7 +93,7 @@ class Impacts:
 
     def plot(self) -> Figure:
         """Return observables against the condition of a sweep with the most values, by law."""
-        from .told.draw import draw_sweep
+        from .report.draw import draw_sweep
 
         if not self.swept:
             raise InputError("no sweep", key="plot", allowed="what ds.sweep returns")

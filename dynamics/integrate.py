@@ -16,9 +16,9 @@ from . import force as fo
 from .result import Impact, impact_of, leave_resting
 from .rules import RULES
 from .scene import Scene
+from .stepping import layout as c
 from .strength import NODES, strength_table
 from .surface import Spot
-from .walk import layout as c
 
 # limit: rows of a history beside those asked for [-]: memory of a long vibration
 _HISTORY_ROWS = 4000
@@ -142,7 +142,7 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array | None) -
     slides, whichever strikes. Then what stays goes to the bodies of the pair.
     """
     # importing it compiles: a file that is refused and the list of keys do without
-    from .walk.compiled import many_impacts
+    from .stepping.compiled import many_impacts
 
     own = law.law if isinstance(law, TurnedLaw) else law
     rows = many_impacts(tuple(own.kernels), given, out, **more)

@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields
 
 from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
-from .surface import Spot
-from .walk import layout as at
-from .walk.layout import (
+from .stepping import layout as at
+from .stepping.layout import (
     CONTACT_BUDGET,
     COUNTS,
     DONE,
@@ -18,6 +17,7 @@ from .walk.layout import (
     RESTS,
     STEP_BUDGET,
 )
+from .surface import Spot
 
 _OF_A_PARTING = (
     at.O_KINETIC, at.O_ENERGETIC, at.O_TANGENTIAL, at.O_TIME, at.O_TOUCHING, at.O_PN, at.O_PT,

@@ -197,7 +197,7 @@ class ContactLaw(ABC):
         such a body comes on top. Errors of one pair go together over the depth.
 
         Raises `InputError`: the law states none, as published ones:
-        `dynamics.told.beside.beside_fitted` says by how much such a law misses the fitted one.
+        `dynamics.report.beside.beside_fitted` says by how much such a law misses the fitted one.
         """
         raise InputError(
             f"{self.name} states no error", key="law", allowed="compact, fitted or a solved pair"

@@ -16,9 +16,9 @@ from ..dynamics.files.scenes import curves_in
 from ..dynamics.files.second import SecondSphere
 from ..dynamics.files.setup import FOLLOWING, Setup, setup_of
 from ..dynamics.mechanisms.asked import NONE_ASKED, Asked
+from ..dynamics.report.band import last_blow
+from ..dynamics.report.flow import lacking
 from ..dynamics.scene import Approach
-from ..dynamics.told.band import last_blow
-from ..dynamics.told.flow import lacking
 from ..models import LAWS
 from ..models.base import ContactLaw
 from .case_file import metal_keys, read_pair

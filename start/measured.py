@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.arrays import Array
-from ..dynamics.told.onset import FirstYield, first_yield
+from ..dynamics.report.onset import FirstYield, first_yield
 from .rules import RULES
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from ...dynamics import Scene, Settings, dent_radius, pressed, strike_batch, str
 from ...dynamics.files.second import second_of
 from ...dynamics.mechanisms.asked import SIMULATED
 from ...dynamics.mechanisms.base import Constants, Mechanism, Situation, attached, observed
-from ...dynamics.walk import layout as c
+from ...dynamics.stepping import layout as c
 from ...models.base import unwarned
 from ..unknowns.wrong_number import wrong_factors
 from .cells import compared

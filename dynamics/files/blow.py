@@ -14,12 +14,12 @@ from ...models.choose import demand, objection
 from ...models.shelf import UnknownLaw
 from ...models.turned import as_made
 from ..integrate import Trace, strike, traced
+from ..report.band import PRESSURE, Band, band_of, compared, idle, vague
+from ..report.checks import checks, lacks_of, outside, reason_above_one
+from ..report.effect import ATOM
+from ..report.flow import Lack
+from ..report.onset import largest_mean_pressure
 from ..result import Impact
-from ..told.band import PRESSURE, Band, band_of, compared, idle, vague
-from ..told.checks import checks, lacks_of, outside, reason_above_one
-from ..told.effect import ATOM
-from ..told.flow import Lack
-from ..told.onset import largest_mean_pressure
 from .setup import Setup
 from .tables import EXACT, SHOWN, impact_row
 
@@ -229,7 +229,7 @@ class Blow:
 
     def plot(self) -> Figure:
         """Return the rig and what stays, to scale, force over depth, and what moves over time."""
-        from ..told.picture import picture  # the published craters: not before they are drawn
+        from ..report.picture import picture  # the published craters: not before they are drawn
 
         return picture(self)
 

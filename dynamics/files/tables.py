@@ -16,7 +16,7 @@ from ...core.output import write_file
 from ...core.provenance import environment
 from ..integrate import Trace
 from ..result import Impact
-from ..walk.layout import HISTORY
+from ..stepping.layout import HISTORY
 
 SHOWN = (
     *((o.label, o.simulated, o.scale, o.unit) for o in OBSERVABLES.values() if o.simulated),

@@ -191,7 +191,7 @@ def interventions(
     """Conceal known effects of real recordings, diagnose, and rewrite docs/interventions.md."""
     from ..interventions.page import counted, write_page
     from ..interventions.plan import read_plan
-    from ..interventions.told import ask, outcomes
+    from ..interventions.scoring import ask, outcomes
 
     pairs = read_plan()
     for told in ask(pairs, raw=raw, out=out):

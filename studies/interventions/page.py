@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.output import write_file
 from .plan import ROOT, Pair
-from .told import NAMING, points, right_with, said
+from .scoring import NAMING, points, right_with, said
 
 PAGE = ROOT / "docs" / "interventions.md"
 REMARKS = ROOT / "data" / "interventions" / "remarks.md"

@@ -11,7 +11,7 @@ from ...core.arrays import Array
 from ...dynamics import force as fo
 from ...dynamics import surface as su
 from ...dynamics.scene import Scene
-from ...dynamics.walk import layout as c
+from ...dynamics.stepping import layout as c
 
 LOADING, UNLOADING, FLIGHT = "loading", "unloading", "flight"
 

@@ -14,8 +14,8 @@ from ...dynamics import surface as su
 from ...dynamics.integrate import Settings, arrays_of
 from ...dynamics.result import Impact, impact_of
 from ...dynamics.scene import Scene
+from ...dynamics.stepping import layout as c
 from ...dynamics.surface import Spot
-from ...dynamics.walk import layout as c
 from .motion import (
     FLIGHT,
     LOADING,

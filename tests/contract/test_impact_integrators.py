@@ -19,7 +19,7 @@ from dentscope.dynamics import (
     strike_many,
     strike_rows,
 )
-from dentscope.dynamics.walk import layout as c
+from dentscope.dynamics.stepping import layout as c
 from dentscope.models.published.ghaednia import GHAEDNIA
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN

@@ -16,7 +16,7 @@ from dentscope.dynamics.files.second import SecondSphere
 from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
 from dentscope.dynamics.mechanisms.asked import SIMULATED
 from dentscope.dynamics.mechanisms.base import Constants, Situation, Values, attached, observed
-from dentscope.dynamics.walk import layout as c
+from dentscope.dynamics.stepping import layout as c
 from dentscope.models import LAWS
 
 Seen = Mapping[str, np.ndarray]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy.comparison.cells import compared
-from dentscope.dynamics.walk.layout import OBSERVABLES as SIMULATED
+from dentscope.dynamics.stepping.layout import OBSERVABLES as SIMULATED
 from dentscope.recordings.columns import TRIAL_COLUMNS
 
 ROOT = Path(__file__).parents[2]
@@ -17,7 +17,7 @@ STAGES = (
 )  # fmt: skip
 HOME = "core/observables.py"
 CHOICES = {
-    ("dynamics/walk/layout.py", "OBSERVABLES"): "order of the integrator's row",
+    ("dynamics/stepping/layout.py", "OBSERVABLES"): "order of the integrator's row",
     ("dynamics/tabulated/energy_route.py", "NAMES"): "order of a computed row",
     ("reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
@@ -26,10 +26,10 @@ CHOICES = {
     ("dynamics/columns.py", "_SHOWN"): "which columns a screen shows",
     ("dynamics/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
-    ("dynamics/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
-    ("dynamics/told/band.py", "SWEPT"): "which numbers of a sweep have a band",
+    ("dynamics/export/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
+    ("dynamics/report/band.py", "SWEPT"): "which numbers of a sweep have a band",
     ("recordings/template.py", "_COLUMNS"): "which columns a set to fill in begins with",
-    ("dynamics/told/draw.py", "SWEPT"): "which observables a figure shows",
+    ("dynamics/report/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""
 

@@ -15,7 +15,7 @@ STANDING_APART = (
     "models/published",  # coefficients that a paper printed
     "campaigns/cases",  # what the published sets are made of
     "core/drag.py", "dynamics/bits.py",  # printed curves, and polynomials of a library
-    "dynamics/walk/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
+    "dynamics/stepping/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
 )  # fmt: skip
 # constants of nature, of definitions, papers and standards, formats, exit codes, sizes of arrays
 EXACT = {
@@ -50,12 +50,12 @@ EXACT = {
     "dynamics/tabulated/energy_route.py": "_SERIES",
     "dynamics/tabulated/energy_table.py": "TERMS",
     "dynamics/tabulated/law_table.py": "_COLUMNS _BIN",
-    "dynamics/told/collisions.py": "TSUJI_DAMPING",
-    "dynamics/told/effect.py": "ATOM",
-    "dynamics/told/flat.py": "_THICK",
-    "dynamics/walk/compiled.py": "_LANES",
-    "dynamics/walk/flight.py": "N_FAST _QUARTER",
-    "dynamics/walk/land.py": "NONE AGAIN",
+    "dynamics/export/collisions.py": "TSUJI_DAMPING",
+    "dynamics/report/effect.py": "ATOM",
+    "dynamics/report/flat.py": "_THICK",
+    "dynamics/stepping/compiled.py": "_LANES",
+    "dynamics/stepping/flight.py": "N_FAST _QUARTER",
+    "dynamics/stepping/land.py": "NONE AGAIN",
     "models/choose.py": "_ELASTIC_DEPTH",
     "models/closed_form.py": "PI SHARPEST",
     "models/correction.py": "MOST",

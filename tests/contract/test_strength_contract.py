@@ -14,8 +14,8 @@ from dentscope.core import Material
 from dentscope.dynamics import Approach, Scene, Striker, scene_of, strike_batch
 from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Surroundings
 from dentscope.dynamics.mechanisms.strength.flow_stress import FlowMechanism
+from dentscope.dynamics.stepping.layout import OBSERVABLES
 from dentscope.dynamics.strength import strength_table
-from dentscope.dynamics.walk.layout import OBSERVABLES
 from dentscope.models import LAWS
 
 R = 5e-3

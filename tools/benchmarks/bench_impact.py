@@ -33,8 +33,8 @@ from dentscope.dynamics import (
     strike_rows,
     tabulated,
 )
+from dentscope.dynamics.stepping import layout as c
 from dentscope.dynamics.tabulated.energy_route import energy_impacts
-from dentscope.dynamics.walk import layout as c
 from dentscope.models import LAWS
 from dentscope.studies.oracle import oracle_impact
 

@@ -23,7 +23,7 @@ from dentscope.dynamics import (
     strike_rows,
     tabulated,
 )
-from dentscope.dynamics.walk import layout as c
+from dentscope.dynamics.stepping import layout as c
 from dentscope.models import LAWS
 
 BALL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)

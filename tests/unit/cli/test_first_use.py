@@ -15,7 +15,7 @@ def test_it_is_said_until_the_code_is_there(tmp_path, monkeypatch, capsys):
 
 
 def test_the_name_is_that_of_the_compiled_integrator() -> None:
-    from dentscope.dynamics.walk import compiled
+    from dentscope.dynamics.stepping import compiled
 
     assert compiled.__name__.endswith(".compiled")
     assert compiled._impacts.py_func.__name__ == "_impacts"

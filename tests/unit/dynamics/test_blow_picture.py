@@ -3,9 +3,9 @@
 import made_blows
 import numpy as np
 import pytest
-from dentscope.dynamics.told.crater import surfaces_left
-from dentscope.dynamics.told.picture import picture
-from dentscope.dynamics.told.rig_shape import rig_shape
+from dentscope.dynamics.report.crater import surfaces_left
+from dentscope.dynamics.report.picture import picture
+from dentscope.dynamics.report.rig_shape import rig_shape
 from dentscope.fitting.crater_shape import crater_shape
 from dentscope.models import LAWS
 from made_blows import blow

@@ -8,9 +8,9 @@ import tomlkit
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
 from dentscope.dynamics import strike
-from dentscope.dynamics.told.collisions import TSUJI, damping_for
-from dentscope.dynamics.told.discrete_elements import substitutes, two_balls
-from dentscope.dynamics.told.lammps import lammps_lines
+from dentscope.dynamics.export.collisions import TSUJI, damping_for
+from dentscope.dynamics.export.discrete_elements import substitutes, two_balls
+from dentscope.dynamics.export.lammps import lammps_lines
 from dentscope.models import LAWS
 from dentscope.start.ball_file import read_ball
 from scipy.integrate import solve_ivp

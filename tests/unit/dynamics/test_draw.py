@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from dentscope.dynamics.files.sweep import SweepTable
-from dentscope.dynamics.told import draw
+from dentscope.dynamics.report import draw
 from dentscope.models.base import DomainWarning
 from dentscope.start import impact
 

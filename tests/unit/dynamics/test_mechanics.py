@@ -11,7 +11,7 @@ from dentscope.dynamics.files.setup import Setup, setup_of
 from dentscope.dynamics.inverse import MeasuredScar, infer
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
-from dentscope.dynamics.told.onset import first_yield_speed
+from dentscope.dynamics.report.onset import first_yield_speed
 from dentscope.models import LAWS
 
 OF = {m.name: m for m in MECHANISMS}

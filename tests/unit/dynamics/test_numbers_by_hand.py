@@ -17,9 +17,9 @@ from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.dynamics.mechanisms.rod_vibration import axial_modes
 from dentscope.dynamics.mechanisms.roughness import Layer
 from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import RateProfile
+from dentscope.dynamics.report.band import _shifted, _sizes, band_of, last_blow
 from dentscope.dynamics.strength import strength_table
 from dentscope.dynamics.surface import Imprint, Spot, beside
-from dentscope.dynamics.told.band import _shifted, _sizes, band_of, last_blow
 from dentscope.models import LAWS
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)

@@ -9,8 +9,8 @@ from dentscope.core import InputError, InputErrors, Material, Pair
 from dentscope.core.flow import Flow, swift
 from dentscope.dynamics import Approach, Friction, Scene, Striker, impacts, strike
 from dentscope.dynamics.files.second import SecondSphere, radius_error
-from dentscope.dynamics.told.band import last_blow
-from dentscope.dynamics.told.beside import error_of
+from dentscope.dynamics.report.band import last_blow
+from dentscope.dynamics.report.beside import error_of
 from dentscope.models import LAWS
 from dentscope.models.turned import similar
 from made_blows import setup

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.inputs.second_sphere import StruckSphere
-from dentscope.dynamics.told.collisions import DASHPOT, HUNT, blow_on, damping_for
-from dentscope.dynamics.told.discrete_elements import substitutes, two_balls
-from dentscope.dynamics.told.lammps import lammps_lines
-from dentscope.dynamics.told.simulators import (
+from dentscope.dynamics.export.collisions import DASHPOT, HUNT, blow_on, damping_for
+from dentscope.dynamics.export.discrete_elements import substitutes, two_balls
+from dentscope.dynamics.export.lammps import lammps_lines
+from dentscope.dynamics.export.simulators import (
     BodiesMet,
     drake_lines,
     formula_of,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.dynamics.told.beside import beside_fitted
+from dentscope.dynamics.report.beside import beside_fitted
 from dentscope.fitting import read_sources, tables_of
 from dentscope.fitting.calibrate import misses, within
 from dentscope.fitting.prediction import predict_by

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, tabulated
-from dentscope.dynamics.told.onset import first_yield
+from dentscope.dynamics.report.onset import first_yield
 from dentscope.models import LAWS, critical_depth
 from dentscope.start.comparison import compare_laws
 from dentscope.start.judged import USABLE, Departure, _groups, departure, nearest

@@ -15,7 +15,7 @@ from dentscope.studies.interventions.bases import base
 from dentscope.studies.interventions.edits import write_side
 from dentscope.studies.interventions.page import page, scored
 from dentscope.studies.interventions.plan import Side, read_plan
-from dentscope.studies.interventions.told import right_with, right_without
+from dentscope.studies.interventions.scoring import right_with, right_without
 from dentscope.studies.proof.apart import Answer
 
 PAIRS = {pair.name: pair for pair in read_plan()}

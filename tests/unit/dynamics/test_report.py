@@ -13,15 +13,15 @@ from dentscope.core.inputs.templates import template
 from dentscope.dynamics import Approach, Scene, Settings, Striker, impacts, strike
 from dentscope.dynamics.files.blow import _cell
 from dentscope.dynamics.files.sweep import SweepTable
-from dentscope.dynamics.told.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.dynamics.told.checks import (
+from dentscope.dynamics.report.band import LAW, METALS, SWEPT, band_of, swept_stds
+from dentscope.dynamics.report.checks import (
     checks,
     reason_above_one,
     swept_above_one,
     swept_walls,
 )
-from dentscope.dynamics.told.effect import effect
-from dentscope.dynamics.told.onset import first_yield_speed, largest_mean_pressure
+from dentscope.dynamics.report.effect import effect
+from dentscope.dynamics.report.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
 from made_blows import blow, setup
 

@@ -1,1 +1,0 @@
-"""What is said of a blow beside its numbers: how sure they are, and what speaks against them."""
