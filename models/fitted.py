@@ -95,9 +95,6 @@ class ClosedForm(ContactLaw):
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     calibration: Calibration | None = None
 
-    __eq__ = object.__eq__  # its arrays have no one truth value
-    __hash__ = object.__hash__
-
     @property
     def kernels(self) -> Kernels:
         """The compiled functions, the same for both laws."""

@@ -71,3 +71,10 @@ def test_the_metal_of_a_stronger_piece_has_its_whole_curve_scaled():
     metal = LAW.metal(sheet(1.2))
     assert metal.flat.flow.curve(0.05) == pytest.approx(1.2 * hardens(1.0).flat.flow.curve(0.05))
     assert metal.sphere is sheet(1.2).sphere
+
+
+def test_a_law_of_another_metal_is_another_law_though_all_its_words_are_alike():
+    other = anchored(FITTED, HARDENING, at=hardens(1.5), stated=sheet(1.5), hardens=True)
+    assert (other.name, other.title, other.source) == (LAW.name, LAW.title, LAW.source)
+    assert other != LAW
+    assert len({LAW, other}) == 2
