@@ -11,8 +11,8 @@ import math
 from numba import float64, njit, types
 
 from ..models.kernel import BRANCH, LOADING, SPLIT, VECTOR, cubic
-from .bits import power
 from .rules import RULES
+from .tabulated.bits import power
 
 # Places in the vector that describes the modified force.
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)

@@ -33,8 +33,8 @@ from ...models.kernel import (
     kernel,
     power_recovery,
 )
-from ..bits import bits_of
 from ..rules import RULES
+from .bits import bits_of
 from .cells import BINS, GUIDE, TableCells, cells_of, column_in
 
 # limit: tables that are kept [-]; memory

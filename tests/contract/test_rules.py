@@ -14,7 +14,7 @@ STAGES = sorted(path.parent.name for path in ROOT.glob("*/rules.py"))
 STANDING_APART = (
     "models/published",  # coefficients that a paper printed
     "campaigns/cases",  # what the published sets are made of
-    "core/drag.py", "dynamics/bits.py",  # printed curves, and polynomials of a library
+    "core/drag.py", "dynamics/tabulated/bits.py",  # printed curves, and polynomials of a library
     "dynamics/stepping/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
 )  # fmt: skip
 # constants of nature, of definitions, papers and standards, formats, exit codes, sizes of arrays

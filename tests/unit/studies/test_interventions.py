@@ -10,7 +10,7 @@ from dentscope.discrepancy.estimates import audit_rows
 from dentscope.recordings import read
 from dentscope.recordings.fetch import read_catalogue
 from dentscope.recordings.shipped import FOLDER
-from dentscope.studies.interventions import bases, told
+from dentscope.studies.interventions import bases, scoring
 from dentscope.studies.interventions.bases import base
 from dentscope.studies.interventions.edits import write_side
 from dentscope.studies.interventions.page import page, scored
@@ -85,11 +85,12 @@ def test_a_missed_verdict_is_called_missed():
 
 def test_silence_has_no_point_and_a_wrong_name_loses_one():
     spin, tilt = PAIRS["spin"], PAIRS["tilt"]
-    assert told.points(tilt, "with", said("missing-physics", "tilt")) == 1
-    assert told.points(tilt, "with", said("missing-physics", "adhesion")) == -1
-    assert [told.points(spin, s, said("undetermined")) for s in ("with", "without")] == [0, 0]
-    assert [told.points(spin, s, said("outside-library")) for s in ("with", "without")] == [0, -1]
-    rows = [row.split(" | ") for row in scored(list(PAIRS.values()), told.outcomes())]
+    assert scoring.points(tilt, "with", said("missing-physics", "tilt")) == 1
+    assert scoring.points(tilt, "with", said("missing-physics", "adhesion")) == -1
+    assert [scoring.points(spin, s, said("undetermined")) for s in ("with", "without")] == [0, 0]
+    outside = said("outside-library")
+    assert [scoring.points(spin, s, outside) for s in ("with", "without")] == [0, -1]
+    rows = [row.split(" | ") for row in scored(list(PAIRS.values()), scoring.outcomes())]
     assert (rows[1][0], rows[1][2]) == ("| always `undetermined`", "0 |")
 
 
@@ -102,20 +103,20 @@ def only_audited(folder, out, limit_s):
 
 
 def test_a_pair_is_asked_once_and_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(told, "answer", only_audited)
+    monkeypatch.setattr(scoring, "answer", only_audited)
     record, pair = tmp_path / "outcomes.json", PAIRS["printed-mass"]
-    found = list(told.ask([pair], raw=tmp_path, out=tmp_path, record=record))
+    found = list(scoring.ask([pair], raw=tmp_path, out=tmp_path, record=record))
     assert [(t.side, t.right) for t in found] == [("with", True), ("without", True)]
-    text = page([pair], told.outcomes(record))
+    text = page([pair], scoring.outcomes(record))
     assert "With the effect 1 of 1" in text
     assert "audit: mass" in text
-    monkeypatch.delattr(told, "answer")
-    assert list(told.ask([pair], raw=tmp_path, out=tmp_path, record=record)) == found
+    monkeypatch.delattr(scoring, "answer")
+    assert list(scoring.ask([pair], raw=tmp_path, out=tmp_path, record=record)) == found
 
 
 def test_fetched_recordings_that_are_not_there_leave_a_pair_out(tmp_path):
     record = tmp_path / "outcomes.json"
-    found = list(told.ask([PAIRS["air"]], raw=tmp_path, out=tmp_path, record=record))
+    found = list(scoring.ask([PAIRS["air"]], raw=tmp_path, out=tmp_path, record=record))
     assert [t.right for t in found] == [None, None]
     assert not record.exists()
 
