@@ -227,7 +227,7 @@ def _scores(v: Verdict) -> ToldCells:
     )  # fmt: skip
     head = (
         "explanation", "weight of evidence over 'nothing missing' [nat]",
-        "share of its own sets that fit no better", "chi2, moved inputs counted",
+        "probability of a fit no better, were it the truth", "chi2, moved inputs counted",
         "miss on trials kept out [standard errors]",
         "probability",
     )  # fmt: skip
