@@ -175,6 +175,13 @@ def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
     assert half["theta"]["high"] - theta == pytest.approx(wide * 0.6745 / 1.6449, rel=0.02)
 
 
+def test_gain_is_the_mean_likelihood_ratio_over_the_places() -> None:
+    plain = Mixture((Linear(np.eye(2), np.zeros((2, 0))),), np.zeros(1))
+    # ratio 1 at no effect, exp(2 * 2 - 2^2/2) = e^2 at the other
+    found = plain.gain(np.array([[2.0, 0.0]]), np.array([[0.0, 0.0], [2.0, 0.0]]))
+    assert found == pytest.approx([math.log(0.5 * (1.0 + math.e**2))], rel=1e-12)
+
+
 def test_p_of_a_fit_is_that_of_as_many_numbers_as_no_parameter_takes(toy) -> None:
     # two cells: the square of their length is exponential of mean 2
     assert toy.fit_of([3.0, 4.0]).p_value == pytest.approx(math.exp(-12.5))
