@@ -71,7 +71,7 @@ def fitted(simulator: Simulator, leading: Fit) -> Fit:
     both = pair_effect(simulator, *screened)
     start = max(found, key=lambda f: f.log_evidence)
     pair = fit_anchored(simulator, leading.mechanisms, both, start=start, place=leading.place)
-    return sharpened_leading(simulator, [pair], base, most=2, rounds=5)[0]
+    return sharpened_leading(simulator, [pair], base, rounds=5)[0]
 
 
 def twice(problem: Problem) -> Problem:

@@ -71,7 +71,7 @@ def with_pairs(
         pair = c.one.mechanism, c.two.mechanism
         pairs.append(fit_anchored(simulator, pair, both, start=start, place=c.place))
         best = max(best, weight(c.names, pairs[-1].log_evidence - ranking.base.log_evidence))
-    pairs = sharpened_leading(simulator, pairs, ranking.base, most=2, rounds=1)
+    pairs = sharpened_leading(simulator, pairs, ranking.base, rounds=1)
     fitted = {f.name for f in pairs}
     unfitted = {"+".join(c.names): c.gain for c in order}
     return replace(
