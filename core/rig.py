@@ -25,15 +25,7 @@ from pydantic import (
 from .errors import InputError
 from .inputs.materials import Mistyped, filled, unlisted
 from .inputs.names import FileName
-from .inputs.ranges import (
-    DENSITIES,
-    MODULI,
-    RADII,
-    SPEEDS,
-    STRENGTHS,
-    Within,
-    span,
-)
+from .inputs.ranges import DENSITIES, MODULI, RADII, SPEEDS, STRENGTHS, Within, span
 from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
 from .inputs.toml_input import InputTable
 from .material import Material

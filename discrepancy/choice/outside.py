@@ -2,10 +2,11 @@
 
 Half of it is a contact law that is free: 16 % in force, 50 % in recovery, over the depth. The
 other half knows nothing of contacts: each observable departs from the baseline by 3, 10 or 30 %,
-smoothly over what varies in the set, or from condition to condition. What repeats say of
-themselves, whatever the simulation, speaks for it as well: a drift over the order of testing, a
-column `x_NAME` that they follow, and scatter beyond any noise that a laboratory misjudges. Beside
-all that stands physics that a verdict has no name for (`mechanisms.NAMELESS`).
+smoothly over what varies in the set, or from condition to condition. It may act unseen
+beside whatever explains the rest, and what repeats say of themselves speaks for that: a drift over
+the order of testing, a column `x_NAME` that they follow, and scatter beyond any noise that a
+laboratory misjudges. Beside all that stands physics that a verdict has no name for
+(`mechanisms.NAMELESS`).
 """
 
 from __future__ import annotations
