@@ -218,15 +218,8 @@ def _named_as_options() -> Iterator[None]:
         yield
     except InputError as error:
         several = error.errors if isinstance(error, InputErrors) else (error,)
-        raise InputErrors(
-            tuple(
-                InputError(
-                    e.message,
-                    source=e.source or "command line",
-                    key="--" + e.key.replace("_", "-") if e.source in ("", "command line") and e.key
-                    else e.key,
-                    allowed=e.allowed,
-                )
-                for e in several
-            )
-        ) from None  # fmt: skip
+        typed = ("", "command line")
+        raise InputErrors(tuple(
+            e.at("command line", e.key and "--" + e.key.replace("_", "-"))
+            if e.source in typed else e for e in several
+        )) from None  # fmt: skip

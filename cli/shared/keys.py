@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import types
 import typing
 from collections.abc import Iterator
 from importlib import import_module
@@ -99,33 +98,20 @@ def keys_of(kind: str) -> list[Key]:
 
 def _keys(model: type[BaseModel], table: str) -> Iterator[Key]:
     """Return the keys of a table, then those of the tables within it."""
+    from ...core.inputs.toml_input import table_in
+    from ...core.rig import Quantity
+
     within: list[tuple[str, type[BaseModel]]] = []
     for name, field in model.model_fields.items():
-        inner, many = _table_in(field.annotation)
-        if inner is None:
+        inner, many = table_in(field.annotation), typing.get_origin(field.annotation)
+        if inner is None or inner is Quantity:
             yield Key(table, name, field.description or "", _allowed(name, field), _default(field))
             continue
         place = f"{table.strip('[]')}.{name}".lstrip(".")
-        place = f"{place}.NAME" if many == "named" else place
-        within.append((f"[[{place}]]" if many == "listed" else f"[{place}]", inner))
+        place = f"{place}.NAME" if many is dict else place
+        within.append((f"[[{place}]]" if many is list else f"[{place}]", inner))
     for place, inner in within:
         yield from _keys(inner, place)
-
-
-def _table_in(annotation: Any) -> tuple[type[BaseModel] | None, str]:
-    """The table that a key holds, and whether there are several, `named` or `listed`."""
-    from ...core.inputs.toml_input import InputTable
-    from ...core.rig import Quantity
-
-    if isinstance(annotation, type) and issubclass(annotation, InputTable):
-        return (None, "") if annotation is Quantity else (annotation, "")
-    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
-    if origin in (dict, list) and inner:
-        found, _ = _table_in(inner[-1])
-        return found, "named" if origin is dict else "listed"
-    if origin in (typing.Union, types.UnionType):
-        return next((t for t in map(_table_in, inner) if t[0] is not None), (None, ""))
-    return None, ""
 
 
 def _allowed(name: str, field: FieldInfo) -> str:

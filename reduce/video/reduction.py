@@ -58,8 +58,7 @@ class VideoReduction:
     - `column`, `row`: (n,) tip of the rod on its axis, or centre of the ball [pixel].
     - `row_std`: (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
     - `lean`: (n,) lean of the rod to the right [rad], 0 for a ball.
-    - `critical_frame`, `threshold`: frame with the fewest dark pixels, grey level between body and
-      background.
+    - `threshold`: grey level between body and background.
     - `half_width`: half the width of the rod, or radius of the ball [pixel].
     - `found`: contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
     """
@@ -70,7 +69,6 @@ class VideoReduction:
     row_std: Array
     lean: Array
     shape: str
-    critical_frame: int
     threshold: float
     half_width: Measured
     tip_radius: float
@@ -152,7 +150,7 @@ def reduce_video(
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     optics, notes = _timed(clip, optics)
     result = VideoReduction(
-        **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels),
+        **track, shape=shape, threshold=0.5 * sum(levels),
         half_width=half, tip_radius=tip_radius, optics=optics,
         found=_contacts(track, half, near, optics, clip.source), notes=(),
     )  # fmt: skip
