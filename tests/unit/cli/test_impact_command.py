@@ -34,13 +34,16 @@ def test_a_template_runs_through_unchanged(kind, tmp_path, capsys):
     assert all(float(row["energetic_restitution"]) < 1.0 + 1e-6 for row in rows)
 
 
+def ball_with(folder, sweep, more=""):
+    text = template("ball").partition("[sweep]")[0].replace("[impact]", f"[impact]\n{more}", 1)
+    (folder / "ball.toml").write_text(f"{text}[sweep]\n{sweep}\n")
+    return str(folder / "ball.toml")
+
+
 def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
-    file = tmp_path / "ball.toml"
-    text = template("ball").partition("[sweep]")[0]
-    text = text.replace("[impact]", "[impact]\nmax_steps = 10", 1)
-    file.write_text(f"{text}[sweep]\nangle_deg = [60.0, 70.0]\n")
+    file = ball_with(tmp_path, "angle_deg = [60.0, 70.0]", "max_steps = 10")
     out = tmp_path / "out"
-    assert run(["impact", str(file), "--law", "fitted", "--out", str(out)]) == EXIT_NOT_CONVERGED
+    assert run(["impact", file, "--law", "fitted", "--out", str(out)]) == EXIT_NOT_CONVERGED
     told = capsys.readouterr().out
     assert "2 impacts of the sweep did not end: see the column outcome" in told
     for name in ("ball", "ball-sweep"):
@@ -71,24 +74,15 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
     ],
 )
 def test_a_bad_sweep_is_one_line(sweep, message, tmp_path, capsys):
-    file = tmp_path / "ball.toml"
-    assert run(["impact", "--new", "ball", str(file)]) == 0
-    text = file.read_text()
-    file.write_text(text[: text.index("[sweep]")] + f"[sweep]\n{sweep}\n")
-    capsys.readouterr()
-    assert run(["impact", str(file)]) == 2
+    assert run(["impact", ball_with(tmp_path, sweep)]) == 2
     told = capsys.readouterr().err
     assert message in told
     assert len(told.strip().splitlines()) == 1
 
 
 def test_what_a_sweep_leaves_as_it_is_is_told(tmp_path, capsys):
-    file = tmp_path / "ball.toml"
-    assert run(["impact", "--new", "ball", str(file)]) == 0
-    text = file.read_text().replace("[impact]", "[impact]\nrepeats = 2")
-    sweep = "[sweep]\nfriction = [0.1, 0.2]\nmass_kg = [1e-3, 1e3]\n"
-    file.write_text(text[: text.index("[sweep]")] + sweep)
-    assert run(["impact", str(file), "--law", "hertz", "--exact", "--out", str(tmp_path)]) == 0
+    file = ball_with(tmp_path, "friction = [0.1, 0.2]\nmass_kg = [1e-3, 1e3]", "repeats = 2")
+    assert run(["impact", file, "--law", "hertz", "--exact", "--out", str(tmp_path)]) == 0
     told = capsys.readouterr().out
     assert "hertz: 2 of 4 impacts go so deep, to" in told
     assert "sweep.friction changes nothing here" in told

@@ -6,43 +6,26 @@ import pytest
 from dentscope.core.drag import HIGHEST_REYNOLDS, air, drag_coefficient, drag_force
 from numba import njit
 
-
-@pytest.mark.parametrize(
-    ("reynolds", "published"),
-    [
-        # computed by the library fluids (C. Bell) with its own code for the same table
-        (0.002, 12000.1875), (0.5, 51.538273834491875), (50.0, 1.5742657203722197),
-        (500.0, 0.5549240285782678), (2500.0, 0.40817983162668914), (4e4, 0.4639066546786017),
-        (7.5e4, 0.49399935325010037), (3.4e5, 0.4631617396760497),
-    ],
-)  # fmt: skip
-def test_standard_curve_of_another_code(reynolds, published):
-    assert drag_coefficient(reynolds) == pytest.approx(published, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("reynolds", "computed", "within"),
-    [
-        # Navier-Stokes, steady: B. Fornberg, J. Fluid Mech. 190 (1988)
-        (100.0, 1.085, 0.01),
-        # unsteady: T. A. Johnson, V. C. Patel, J. Fluid Mech. 378 (1999)
-        (300.0, 0.656, 0.01),
-    ],
-)  # fmt: skip
-def test_solutions_of_the_equations_of_flow(reynolds, computed, within):
-    assert drag_coefficient(reynolds) == pytest.approx(computed, rel=within)
+CURVES = {
+    # computed by the library fluids (C. Bell) with its own code for the same table
+    1e-6: {0.002: 12000.1875, 0.5: 51.538273834491875, 50.0: 1.5742657203722197,
+           500.0: 0.5549240285782678, 2500.0: 0.40817983162668914, 4e4: 0.4639066546786017,
+           7.5e4: 0.49399935325010037, 3.4e5: 0.4631617396760497},
+    # Navier-Stokes, steady: B. Fornberg, J. Fluid Mech. 190 (1988); unsteady: T. A. Johnson,
+    # V. C. Patel, J. Fluid Mech. 378 (1999)
+    0.01: {100.0: 1.085, 300.0: 0.656},
+    # measured: Lapple and Shepherd (1940), the table of Perry's handbook
+    0.06: {0.1: 240.0, 1.0: 26.5, 10.0: 4.1, 100.0: 1.07, 1e3: 0.46, 3e3: 0.40, 1e4: 0.405,
+           3e4: 0.47, 1e5: 0.48},
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("reynolds", "measured"),
-    [
-        # Lapple and Shepherd (1940), the table of Perry's handbook
-        (0.1, 240.0), (1.0, 26.5), (10.0, 4.1), (100.0, 1.07), (1e3, 0.46), (3e3, 0.40),
-        (1e4, 0.405), (3e4, 0.47), (1e5, 0.48),
-    ],
-)  # fmt: skip
-def test_measured_drag_of_spheres(reynolds, measured):
-    assert drag_coefficient(reynolds) == pytest.approx(measured, rel=0.06)
+    ("within", "reynolds", "theirs"),
+    [(w, *row) for w, rows in CURVES.items() for row in rows.items()],
+)
+def test_the_curve_is_that_of_others(within, reynolds, theirs):
+    assert drag_coefficient(reynolds) == pytest.approx(theirs, rel=within)
 
 
 def test_oseen_at_creeping_flow():

@@ -17,6 +17,7 @@ E, NU, S, R = 200e9, 0.3, 503e6, 1e-3
 RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
 PAIR = Pair(Material(E=E, nu=NU, Sy=S), RIGID, R)
 E_RED = E / (1.0 - NU**2)
+SLOPE = math.pi * (0.454 + 0.41 * NU) * 2.8 * S / (2.0 * E_RED)  # pi K H/(2 E')
 
 
 def force(name, depth):
@@ -61,17 +62,15 @@ def test_jackson_greens_recovery_as_public_code_writes_it():
 )
 def test_kogut_etsion_force_in_dimensional_powers(w, factor, strain, radius, depth_power):
     """1.37 (pi K H/2E')^0.15 E' R^0.575 d^1.425, and 1.87, 0.474, 0.737, 1.263, to their digits."""
-    slope = math.pi * (0.454 + 0.41 * NU) * 2.8 * S / (2.0 * E_RED)
-    depth = w * slope**2 * R
-    expected = factor * slope**strain * E_RED * R**radius * depth**depth_power
+    depth = w * SLOPE**2 * R
+    expected = factor * SLOPE**strain * E_RED * R**radius * depth**depth_power
     assert force("kogut-etsion", depth) == pytest.approx(expected, rel=4e-3)
 
 
 def test_kogut_etsion_area_in_dimensional_powers():
     """0.94 pi R^0.854 (pi K H/2E')^-0.292 d^1.146 between w = 6 and 110."""
-    slope = math.pi * (0.454 + 0.41 * NU) * 2.8 * S / (2.0 * E_RED)
-    depth = 40.0 * slope**2 * R
-    area = 0.94 * math.pi * R**0.854 * slope**-0.292 * depth**1.146
+    depth = 40.0 * SLOPE**2 * R
+    area = 0.94 * math.pi * R**0.854 * SLOPE**-0.292 * depth**1.146
     a = float(LAWS["kogut-etsion"].contact_radius(PAIR, depth))
     assert math.pi * a**2 == pytest.approx(area, rel=1e-9)
 
@@ -124,8 +123,7 @@ def test_stick_and_slip_are_one_where_nothing_wants_to_slide():
 
 
 def test_kogut_etsion_continued_leaves_the_other_at_110_only():
-    slope = math.pi * (0.454 + 0.41 * NU) * 2.8 * S / (2.0 * E_RED)
-    onset = slope**2 * R
+    onset = SLOPE**2 * R
     below, above = 100.0 * onset, 500.0 * onset
     assert force("kogut-etsion-continued", below) == force("kogut-etsion", below)
     hertz = 4.0 / 3.0 * E_RED * math.sqrt(R) * onset**1.5

@@ -1,45 +1,30 @@
 """The impulse under a force trace against the momentum change, on half sines of known area."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from dentscope.core.rig import Quantity, StrikerTable, TargetTable
-from dentscope.recordings import RecordingSet, SetFile, Trials
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.trace import check_trace
+from made_sets import STEEL, made_set
 
 MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6
+BALL = f"""shape = "sphere"
+tip_radius_m = 0.0115
+mass_kg = {{ value = {MASS}, std = 1e-5 }}
+{STEEL}Sy_Pa = 7e8
+"""
+NOISE = "impact_speed_relative = 0.005\nforce_N_relative = 0.005\nrestitution = 0.005\n"
 
 
-def judged(folder: Path, *, scale: float, restitution: float | None, upto: float = 1.0):
+def judged(folder, *, scale=1.0, restitution=E, upto=1.0, trace=None):
     impulse = MASS * ((1.0 + E) * SPEED + 9.81 * TIME)
     t = np.linspace(0.0, upto * TIME, 401)
     force = scale * impulse * np.pi / (2.0 * TIME) * np.sin(np.pi * t / TIME)
-    path = folder / "a.csv"
-    rows = [f"{a!r},{b!r}" for a, b in zip(t.tolist(), force.tolist(), strict=True)]
-    path.write_text("time_s,force_N\n" + "\n".join(rows) + "\n")
-    return check_trace(set_of(path, restitution))
-
-
-def set_of(trace: Path, restitution: float | None) -> RecordingSet:
-    ball = StrikerTable(
-        shape="sphere", tip_radius_m=Quantity(value=0.0115, std=0.0),
-        mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,
-        Sy_Pa=Quantity(value=7e8, std=0.0),
-    )  # fmt: skip
-    setup = SetFile(
-        format="recording-set/1", target=TargetTable(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
-        strikers={"ball": ball},
-        noise={"impact_speed_relative": 0.005, "force_N_relative": 0.005, "restitution": 0.005},
-    )  # fmt: skip
-    observables = {} if restitution is None else {"restitution": np.array([restitution])}
-    trials = Trials(
-        trial=("a",), striker=("ball",), angle_deg=np.array([90.0]),
-        impact_speed_m_s=np.array([SPEED]), drop_height_m=np.array([np.nan]),
-        observables=observables,
-    )  # fmt: skip
-    return RecordingSet(setup, trials, traces={"a": trace})
+    measured = {} if restitution is None else {"restitution": [restitution]}
+    return check_trace(made_set(
+        folder, BALL, target="Sy_Pa = 3e8\n", noise=f"{NOISE}tip_height_m = 1e-6\n",
+        trace=trace or {"time_s": t, "force_N": force}, angle_deg=[90], impact_speed_m_s=[SPEED],
+        **measured,
+    ))  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -64,12 +49,11 @@ def test_impulse_of_a_half_sine(tmp_path, scale, restitution, severity):
 
 
 def test_trace_that_stops_under_load_is_not_judged(tmp_path):
-    (finding,) = judged(tmp_path, scale=1.0, restitution=E, upto=0.7)
+    (finding,) = judged(tmp_path, upto=0.7)
     assert finding.severity is Severity.UNCHECKED
     assert "ends at 81% of its peak" in finding.message
 
 
 def test_a_trace_of_the_motion_alone_is_not_judged(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_text("time_s,tip_height_m\n0.0,0.0\n1e-5,1e-6\n")
-    assert check_trace(set_of(path, E)) == []
+    heights = {"time_s": [0.0, 1e-5], "tip_height_m": [0.0, 1e-6]}
+    assert judged(tmp_path, trace=heights) == []

@@ -2,12 +2,13 @@
 
 import math
 from contextlib import nullcontext
+from functools import partial
 
 import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.core.rig import StrikerTable
-from dentscope.recordings import audit, read
+from dentscope.recordings import audit
 from dentscope.recordings.checks.contact import _budget, _supply, check_energy, check_force
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
@@ -25,34 +26,14 @@ from dentscope.recordings.checks.press import (
 from dentscope.recordings.checks.trace import check_trace
 from dentscope.recordings.checks.trial_view import TrialReading
 from dentscope.recordings.noise import noise_of
+from made_sets import BALL, STEEL, made_set
 
-STEEL = "E_Pa = 2e11\nnu = 0.3\n"
-BALL = f'shape = "sphere"\ntip_radius_m = 5e-3\nmass_kg = 4e-3\n{STEEL}'
 ROD = f'shape = "rod"\ntip_radius_m = 5e-3\nradius_m = 5e-3\nlength_m = 0.3\nmass_kg = 0.2\n{STEEL}'
 
 
 @pytest.fixture
 def set_of(tmp_path):
-    def make(striker=BALL, *, target="Sy_Pa = 3.5e8\n", noise="", more="", trace=None, **columns):
-        setup = (
-            f'format = "recording-set/1"\nname = "a"\n[target]\n{STEEL}{target}'
-            f"[strikers.body]\n{striker}[noise]\n{noise}{more}"
-        )
-        n = len(next(iter(columns.values())))
-        columns = {"trial": [f"t{i}" for i in range(n)], "striker": ["body"] * n, **columns}
-        rows = [
-            ",".join(columns),
-            *(",".join(map(str, r)) for r in zip(*columns.values(), strict=True)),
-        ]
-        (tmp_path / "set.toml").write_text(setup, encoding="utf-8")
-        (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-        if trace is not None:
-            (tmp_path / "traces").mkdir(exist_ok=True)
-            text = "time_s,force_N\n" + "\n".join(f"{t},{f}" for t, f in zip(*trace, strict=True))
-            (tmp_path / "traces" / "t0.csv").write_text(text + "\n", encoding="utf-8")
-        return read(tmp_path)
-
-    return make
+    return partial(made_set, tmp_path)
 
 
 def of_check(findings, name):
@@ -158,20 +139,23 @@ DEPTHS = "permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e
 GAUGE = "[gauge]\npermanent_depth_m = 0.04\npress_depth_m = 0.04\n"
 
 
-@pytest.mark.parametrize(("off", "said"), [(3.9, "CONSISTENT"), (4.1, "CONTRADICTION")])
-def test_four_standard_deviations_are_a_mistake(set_of, off, said):
-    """What stays and what springs back are the depth under load; each is known to 1 um."""
-    depth = 5e-5 + off * math.sqrt(3.0) * 1e-6
-    found = set_of(BALL + "Sy_Pa = 2e9\n", **PRESSED, press_depth_m=[depth], noise=DEPTHS)
-    assert of_check(check_press_depths(found), "depths").severity is Severity[said]
+@pytest.mark.parametrize(
+    ("deepest", "scales", "z"),
+    [*((5e-5 + z * math.sqrt(3.0) * 1e-6, "", z) for z in (3.9, 4.1)),
+     (6e-5, "", 10.0 / math.sqrt(3.0)), (6e-5, GAUGE, 10.0 / math.sqrt(3.0 + 1.6**2 + 2.4**2))],
+)  # fmt: skip
+def test_four_standard_deviations_are_a_mistake_and_the_error_of_a_scale_counts(
+    set_of, deepest, scales, z
+):
+    """What stays and springs back, 50 um, are the depth under load; readings are off by 1 um.
 
-
-@pytest.mark.parametrize(("scales", "error"), [("", 3.0), (GAUGE, 3.0 + 1.6**2 + 2.4**2)])
-def test_the_error_of_a_scale_is_no_contradiction(set_of, scales, error):
-    """10 of 60 um are not accounted for; a scale may be 4 % off, and readings 1 um."""
-    found = set_of(BALL + "Sy_Pa = 2e9\n", **PRESSED, press_depth_m=[6e-5], noise=DEPTHS + scales)
+    A scale may be off by 4 %.
+    """
+    ball = BALL + "Sy_Pa = 2e9\n"
+    found = set_of(ball, **PRESSED, press_depth_m=[deepest], noise=DEPTHS + scales)
     seen = of_check(check_press_depths(found), "depths")
-    assert seen.significance == pytest.approx(10.0 / math.sqrt(error), rel=1e-9)
+    assert seen.severity is Severity["CONTRADICTION" if z > 4.0 else "CONSISTENT"]
+    assert seen.significance == pytest.approx(z, rel=1e-9)
 
 
 def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
@@ -304,17 +288,15 @@ def _traced(set_of, ends, samples=41):
     force[0] = ends * force.max()
     found = set_of(
         angle_deg=[90], impact_speed_m_s=[1], impact_speed_m_s_std=[1e-6], restitution=[1e-9],
-        noise="restitution = 1e-6\nforce_N_relative = 0.003\n", trace=(t, force),
+        noise="restitution = 1e-6\nforce_N_relative = 0.003\n",
+        trace={"time_s": t, "force_N": force},
     )  # fmt: skip
     return of_check(check_trace(found), "impulse")
 
 
-def test_a_trace_that_begins_above_a_twentieth_of_its_peak_misses_a_part(set_of):
+def test_a_trace_begins_below_a_twentieth_of_its_peak_and_has_five_samples(set_of):
     assert _traced(set_of, 0.04).severity is Severity.CONSISTENT
     assert _traced(set_of, 0.06).severity is Severity.UNCHECKED
-
-
-def test_a_trace_of_five_samples_has_an_impulse(set_of):
     assert "the trace has" in _traced(set_of, 0.0, samples=4).message
     assert "under the trace" in _traced(set_of, 0.0, samples=5).message
 

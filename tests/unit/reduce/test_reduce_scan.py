@@ -74,15 +74,17 @@ def test_a_level_surface_has_no_crater(tmp_path, capsys):
     assert "no crater" in capsys.readouterr().err
 
 
+Y, X = np.mgrid[-1:1:48j, -1:1:40j]
+DENT = -1e-5 * np.maximum(0.0, 0.3 - X**2 - Y**2)
+DENT += np.random.default_rng(3).normal(0.0, 2e-8, DENT.shape)
+
+
 @pytest.mark.parametrize(
     ("between", "comma", "end"),
     [(" ", ".", ""), ("\t", ".", "\t"), (";", ",", ""), (",", ".", ",")],
 )
 def test_a_grid_is_read_with_any_separator(tmp_path, between, comma, end):
-    y, x = np.mgrid[-1:1:48j, -1:1:40j]
-    z = -1e-5 * np.maximum(0.0, 0.3 - x**2 - y**2)
-    z += np.random.default_rng(3).normal(0.0, 2e-8, z.shape)
-    rows = [between.join(f"{v:.4e}".replace(".", comma) for v in row) + end for row in z]
+    rows = [between.join(f"{v:.4e}".replace(".", comma) for v in row) + end for row in DENT]
     path = tmp_path / "grid.csv"
     path.write_text("\n".join(rows))
     found = reduce(path, Options(unit="m", step_m=1e-5)).values["permanent_depth_m"]
@@ -90,13 +92,10 @@ def test_a_grid_is_read_with_any_separator(tmp_path, between, comma, end):
 
 
 def test_lines_of_an_instrument_above_a_grid_and_units_of_columns_are_read(tmp_path):
-    y, x = np.mgrid[-1:1:48j, -1:1:40j]
-    z = -1e-5 * np.maximum(0.0, 0.3 - x**2 - y**2)
-    z += np.random.default_rng(3).normal(0.0, 2e-8, z.shape)
     said = '"Model","VK-X"\n"XY calibration","10","um"\n"Horizontal","40"\n""\n"Height"\n'
-    rows = [",".join(f'"{v:.4e}"' for v in row) for row in z]
+    rows = [",".join(f'"{v:.4e}"' for v in row) for row in DENT]
     (tmp_path / "grid.csv").write_text(said + "\n".join(rows))
-    points = [f"{10 * i},{10 * k},{1e9 * z[k, i]:.2f}" for i in range(40) for k in range(48)]
+    points = [f"{10 * i},{10 * k},{1e9 * DENT[k, i]:.2f}" for i in range(40) for k in range(48)]
     (tmp_path / "points.csv").write_text("\n".join(["x [um],y [um],z [nm]", *points]))
     for name, given in (("grid", Options(unit="m", step_m=1e-5)), ("points", Options())):
         found = reduce(tmp_path / f"{name}.csv", given).values["permanent_depth_m"]

@@ -46,17 +46,17 @@ def test_a_point_gives_speeds_and_friction(tmp_path):
     assert (tmp_path / "picture.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("wrong", [{"unit": "cm"}, {"unit": "mm"}, {"frame_rate_hz": 50.0}])
-def test_a_point_that_does_not_fall_is_refused(tmp_path, wrong):
+@pytest.mark.parametrize(
+    ("wrong", "by", "told"),
+    [*(({k: v}, Refused, "falls with")
+       for k, v in (("unit", "cm"), ("unit", "mm"), ("frame_rate_hz", 50.0))),
+     ({"up": "-y"}, InputError, "no bounce with a flight")],
+)  # fmt: skip
+def test_a_point_that_does_not_fall_or_bounce_is_refused(tmp_path, wrong, by, told):
     _flight(tmp_path / "a.csv")
-    with pytest.raises(Refused, match="falls with"):
-        reduce(tmp_path / "a.csv", Options(shape="sphere", tip_radius_m=0.02, up="y", **wrong))
-
-
-def test_a_point_without_a_bounce_is_a_line(tmp_path):
-    _flight(tmp_path / "a.csv")
-    with pytest.raises(InputError, match="no bounce with a flight"):
-        reduce(tmp_path / "a.csv", Options(shape="sphere", tip_radius_m=0.02, up="-y"))
+    given = {"shape": "sphere", "tip_radius_m": 0.02, "up": "y", **wrong}
+    with pytest.raises(by, match=told):
+        reduce(tmp_path / "a.csv", Options(**given))
 
 
 @pytest.mark.skipif(not RAW.exists(), reason="the raw recordings are not beside the checkout")
