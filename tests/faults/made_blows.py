@@ -30,5 +30,15 @@ def setup(given):
     return setup_of(content, source="ball.toml")
 
 
+def ball_setup(*, target, ball, radius=5e-3, law="hertz", speed=1.0, **tables):
+    """A ball on a target without gravity; `impact` and other tables beside, or in place."""
+    met = {"laws": [law], **({"impact_speed_m_s": speed} if speed else {})}
+    return setup({
+        "gravity_m_s2": 0.0, "target": dict(target),
+        "strikers": {"ball": {"shape": "sphere", "tip_radius_m": radius, **ball}},
+        **tables, "impact": met | tables.get("impact", {}),
+    })  # fmt: skip
+
+
 def blow(given, *laws):
     return blow_of(setup(given), [LAWS[name] for name in laws or ("fitted",)])

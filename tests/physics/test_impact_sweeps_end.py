@@ -13,6 +13,7 @@ from dentscope.dynamics.tabulated.cells import MOST_CELLS, cells_of
 from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts
 from dentscope.dynamics.tabulated.energy_table import energy_table
 from dentscope.models import LAWS
+from made_blows import ball_setup
 
 _STEEL = {"E_Pa": 2.0e11, "nu": 0.3, "density_kg_m3": 7800.0}
 _RIGID = {"rigid": True, "density_kg_m3": 7800.0}
@@ -49,16 +50,12 @@ def setup_for(bodies: str, support: str, angle: float, laws: tuple[str, ...] = D
         "plate": {"thickness_m": 0.02},
         "sprung": {"support_mass_kg": 0.5, "support_stiffness_N_m": 1e6},
     }.get(support, {})
-    content = {
-        "target": {**flat, **more},
-        "strikers": {"ball": {"shape": "sphere", "tip_radius_m": 0.01, **ball}},
-        **({"friction": {"coefficient": 0.1}} if angle < 90.0 else {}),
-        "impact": {
-            "impact_speed_m_s": 1.0, "support": support, "angle_deg": angle, "laws": list(laws)
-        },
-        "sweep": {"impact_speed_m_s": list(SPEEDS)},
-    }  # fmt: skip
-    return setup_of(content, source="sweep")
+    rubs = {"friction": {"coefficient": 0.1}} if angle < 90.0 else {}
+    return ball_setup(
+        target={**flat, **more}, ball=ball, radius=0.01, gravity_m_s2=9.81, **rubs,
+        impact={"support": support, "angle_deg": angle, "laws": list(laws)},
+        sweep={"impact_speed_m_s": list(SPEEDS)},
+    )  # fmt: skip
 
 
 def assert_swept(bodies: str, support: str, angle: float) -> None:

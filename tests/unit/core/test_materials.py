@@ -176,11 +176,10 @@ def test_the_commands(capsys):
 
 
 def test_an_impact_of_two_named_materials():
-    ball, impact = {"shape": "sphere", "tip_radius_m": 0.003}, {"impact_speed_m_s": 1.0}
     aluminium = {"E_Pa": 68.9e9, "nu": 0.33, "Sy_Pa": 276e6}
     steel = {"E_Pa": 200e9, "nu": 0.283, "density_kg_m3": 7670, "hardness_Pa": 7.4e9}
     named, stated = (
-        made_blows.blow({"target": flat, "strikers": {"ball": ball | metal}, "impact": impact})
+        made_blows.blow(made_blows.ball_setup(target=flat, ball=metal, radius=0.003).content)
         for flat, metal in (
             ({"material": "aluminium-6061-t6"}, {"material": "steel-440c-hardened"}),
             (aluminium, steel),

@@ -13,6 +13,7 @@ from dentscope.dynamics.export.discrete_elements import substitutes, two_balls
 from dentscope.dynamics.export.lammps import lammps_lines
 from dentscope.models import LAWS
 from dentscope.start.ball_file import read_ball
+from made_blows import ball_setup
 from scipy.integrate import solve_ivp
 
 STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
@@ -201,15 +202,10 @@ GRAINS = {
 
 @pytest.mark.parametrize(("flat", "ball", "R", "density", "speed"), GRAINS.values(), ids=GRAINS)
 def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path):
-    content = {
-        "gravity_m_s2": 0.0, "target": flat,
-        "strikers": {
-            "ball": {"shape": "sphere", "tip_radius_m": R, "density_kg_m3": density, **ball}
-        },
-        "impact": {"impact_speed_m_s": speed},
-    }  # fmt: skip
+    ball = {"density_kg_m3": density, **ball}
     file = tmp_path / "ball.toml"
-    file.write_text(tomlkit.dumps(content))
+    given = ball_setup(target=flat, ball=ball, radius=R, speed=speed).content
+    file.write_text(tomlkit.dumps(given))
     assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
     mass = 4.0 / 3.0 * math.pi * R**3 * density
     table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))

@@ -7,27 +7,20 @@ import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.dynamics import Approach, Scene, Striker, strike
 from dentscope.dynamics.files.blow import blow_of
-from dentscope.dynamics.files.setup import Setup, setup_of
 from dentscope.dynamics.inverse import MeasuredScar, infer
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.dynamics.report.onset import first_yield_speed
 from dentscope.models import LAWS
+from made_blows import ball_setup
 
 OF = {m.name: m for m in MECHANISMS}
 STEEL = {"E_Pa": 2.06e11, "nu": 0.3, "density_kg_m3": 7800.0}
 GLASS = {"E_Pa": 7.0e10, "nu": 0.22, "density_kg_m3": 2500.0}
 
 
-def setup(*, target=STEEL, ball=STEEL, radius=5e-3, law="hertz", speed=1.0, **tables) -> Setup:
-    """A ball on a target; `impact` and other tables beside."""
-    blow = {"laws": [law], **({"impact_speed_m_s": speed} if speed else {})}
-    blow |= tables.pop("impact", {})
-    content = {
-        "gravity_m_s2": 0.0, "target": dict(target), "impact": blow,
-        "strikers": {"ball": {"shape": "sphere", "tip_radius_m": radius, **ball}}, **tables,
-    }  # fmt: skip
-    return setup_of(content, source="a.toml")
+def setup(**given):
+    return ball_setup(**{"target": STEEL, "ball": STEEL, **given})
 
 
 def struck(**given):

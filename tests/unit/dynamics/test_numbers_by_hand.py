@@ -10,7 +10,6 @@ from dentscope.core import Material, Pair
 from dentscope.dynamics import Approach, Scene, Striker
 from dentscope.dynamics.beam import rod_modes
 from dentscope.dynamics.files.bodies import flowing
-from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.force import loading_window
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
@@ -21,6 +20,7 @@ from dentscope.dynamics.report.band import _shifted, _sizes, band_of, last_blow
 from dentscope.dynamics.strength import strength_table
 from dentscope.dynamics.surface import Imprint, Spot, beside
 from dentscope.models import LAWS
+from made_blows import ball_setup
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)
 STEEL = Material(E=2e11, nu=0.3, Sy=4e8, density=7800.0)
@@ -35,14 +35,8 @@ def scene(*, law="fitted", ball=HARD, flat=STEEL, radius=5e-3, mass=4e-3, speed=
 
 def setup(**changed):
     """An elastic ball with numbers changed: `ball` and `target` hold keys of their tables."""
-    body = {"E_Pa": 2e11, "nu": 0.3}
-    ball = {**body, "shape": "sphere", "tip_radius_m": 5e-3, "density_kg_m3": 7800}
-    content = {
-        "gravity_m_s2": 0.0, "target": body | changed.get("target", {}),
-        "strikers": {"ball": ball | changed.get("ball", {})},
-        "impact": {"impact_speed_m_s": 1.0, "laws": ["hertz"]},
-    }  # fmt: skip
-    return setup_of(content, source="a.toml")
+    body = {"E_Pa": 2e11, "nu": 0.3, "density_kg_m3": 7800}
+    return ball_setup(**{name: body | changed.get(name, {}) for name in ("target", "ball")})
 
 
 def test_hertz_is_right_to_three_thousandths_and_what_a_ball_adds():

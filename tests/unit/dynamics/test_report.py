@@ -23,7 +23,7 @@ from dentscope.dynamics.report.checks import (
 from dentscope.dynamics.report.effect import effect
 from dentscope.dynamics.report.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
-from made_blows import blow, setup
+from made_blows import ball_setup, blow, setup
 
 BRASS = """
 name = "steel20-brass"
@@ -281,10 +281,8 @@ def test_a_sheet_of_less_than_the_contacts_radius_is_not_thick():
     # ISO 6506-1 asks 8 depths of dents wider than 0.24 of the ball: at 0.24 that is the radius a,
     # 8 (1 - root(1 - 0.24^2))/0.24 = 0.97 a; this dent is 0.07 of the ball wide, 8 depths 0.2 a
     flat = {"E_Pa": 2e11, "nu": 0.3, "Sy_Pa": 3e8, "density_kg_m3": 7800, "thickness_m": 2e-4}
-    ball = {"shape": "sphere", "tip_radius_m": 5e-3, "E_Pa": 2e11, "nu": 0.3,
-            "density_kg_m3": 7800}  # fmt: skip
-    content = {"target": flat, "strikers": {"ball": ball}, "impact": {"impact_speed_m_s": 1.0}}
-    found = blow(content)
+    ball = {"E_Pa": 2e11, "nu": 0.3, "density_kg_m3": 7800}
+    found = blow(ball_setup(target=flat, ball=ball, gravity_m_s2=9.81).content)
     (line,) = (x for x in found.checks() if "enough for the dent" in x)
     assert "NOT thick" in line
     a = float(LAWS["fitted"].contact_radius(
@@ -381,12 +379,10 @@ laws = ["fitted", "hertz"]
 
 
 def soft_ball(*speeds):
-    body = {"E_Pa": 2e11, "nu": 0.3}
-    ball = {**body, "Sy_Pa": 3e8, "density_kg_m3": 7800, "shape": "sphere", "tip_radius_m": 0.005}
-    return setup({
-        "gravity_m_s2": 0.0, "target": {**body, "Sy_Pa": 2e9}, "strikers": {"ball": ball},
-        "impact": {"impact_speed_m_s": 1.0}, "sweep": {"impact_speed_m_s": list(speeds)},
-    })  # fmt: skip
+    hard, soft = (
+        {"E_Pa": 2e11, "nu": 0.3, "Sy_Pa": Sy, "density_kg_m3": 7800} for Sy in (2e9, 3e8)
+    )
+    return ball_setup(target=hard, ball=soft, sweep={"impact_speed_m_s": list(speeds)})
 
 
 def test_a_law_that_makes_energy_is_told_from_motion_that_feeds_the_rebound():
