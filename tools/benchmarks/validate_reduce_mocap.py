@@ -13,6 +13,7 @@ from dentscope.reduce.mocap.motion import Prior
 from dentscope.reduce.mocap.reduction import MocapReduction, MocapScene, reduce_mocap
 from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import MocapTruth, random_ball, random_rod, simulate
+from honesty import judge
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -34,8 +35,7 @@ def reduced(truth: MocapTruth, *, known: bool) -> MocapReduction:
 
 
 def main(count: int, shape: str, *, known: bool) -> None:
-    errors: dict[str, list[float]] = {}
-    scores: dict[str, list[float]] = {}
+    errors: dict[str, list[tuple[float, float]]] = {}
     failed = 0
     for seed in range(count):
         truth = random_rod(seed) if shape == "rod" else random_ball(seed)
@@ -49,20 +49,14 @@ def main(count: int, shape: str, *, known: bool) -> None:
             print(f"recording {seed}: {len(found.hits)} impacts")
         for name, value in truth.values().items():
             measured = found.hits[0].measured[name]
-            errors.setdefault(name, []).append(measured.value - value)
-            scores.setdefault(name, []).append((measured.value - value) / measured.std)
+            error = measured.value - value, measured.std
+            errors.setdefault(name, []).append(error)
             if abs(value) > 0.0:
-                part = f"{name} relative"
-                errors.setdefault(part, []).append((measured.value - value) / abs(value))
+                part = error[0] / abs(value), error[1] / abs(value)
+                errors.setdefault(f"{name}, relative", []).append(part)
     print(f"{shape}: {count} recordings, {failed} not reduced")
     for name, listed in errors.items():
-        e = np.array(listed)
-        line = f"{name}: rms {np.sqrt(np.mean(e**2)):.3g}, worst {abs(e).max():.3g}, "
-        line += f"95 % below {np.quantile(abs(e), 0.95):.3g}"
-        if name in scores:
-            z = np.array(scores[name])
-            line += f"; within 2 std {np.mean(abs(z) < 2.0):.1%}, z {z.mean():+.2f} ± {z.std():.2f}"
-        print(line)
+        judge(name, *np.array(listed).T)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
+from honesty import judge
 
 HEADS = (
     "Prüfzeit;Standardweg;Standardkraft\ns;mm;N\n", '"Time (s)","Extension (mm)","Load (N)"\n',
@@ -135,7 +136,7 @@ def main(count, path):
         given = {} if machine is None else {"machine_compliance_m_N": machine}
         return load_kind("press").run(path, given, source="benchmark")
 
-    pulls, lost = {}, []
+    errors, lost = {}, []
     for seed in range(count):
         rng = np.random.default_rng(seed)
         load, depth, truth, machine = press(rng)
@@ -146,22 +147,12 @@ def main(count, path):
             lost.append(f"{seed} {error}")
             continue
         for name, true in truth.items():
-            one = found.values.get(name)
-            if one is None or name == "load_N":
-                error = "" if one is None else (one.value / true - 1.0) / 0.01
-            else:
-                error = (one.value - true) / one.std
-            if error != "":
-                pulls.setdefault((kind, name), []).append((error, abs(one.value / true - 1.0)))
-    say = sys.stdout.write
-    say(f"{count} presses, {len(lost)} refused\n" + "".join(f"  {x}\n" for x in lost[:9]))
-    for (kind, name), each in sorted(pulls.items()):
-        p, error = np.array(each).T
-        say(
-            f"{kind:7s} {name:24s} {p.size:4d} pulls: median {np.median(p):+.2f}, spread "
-            f"{1.4826 * np.median(np.abs(p - np.median(p))):.2f}, within 2: "
-            f"{100 * np.mean(np.abs(p) < 2):.1f} %, error {100 * np.median(error):.2f} %\n"
-        )
+            if (one := found.values.get(name)) is not None:
+                error = one.value / true - 1.0, 0.01 if name == "load_N" else one.std / true
+                errors.setdefault(f"{kind} {name}, relative", []).append(error)
+    print(f"{count} presses, {len(lost)} refused", *lost[:9], sep="\n  ")
+    for name, each in sorted(errors.items()):
+        judge(name, *np.array(each).T)
     wrong = {}
     for seed in range(count):
         rng = np.random.default_rng(10_000 + seed)
@@ -171,8 +162,8 @@ def main(count, path):
             wrong.setdefault(str(kind), []).append(seed)
         except InputError:
             pass
-    say(f"{count} records that are no whole press, {sum(map(len, wrong.values()))} give a number: "
-        f"{wrong}\n")  # fmt: skip
+    given = sum(map(len, wrong.values()))
+    print(f"{count} records that are no whole press, {given} give a number: {wrong}")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
+from honesty import judge
 from scipy.signal import lsim
 
 RATE = 20_000.0
@@ -107,17 +108,15 @@ def main(count, first, path):
             lost.append((f"{kind} {seed}", error.message))
             continue
         names = ("peak_force_N", "contact_time_s", "impulse_N_s")
-        rows.append([kind, *((found[n].value - x, found[n].std)
+        rows.append([kind, *((found[n].value / x - 1.0, found[n].std / x)
                              for n, x in zip(names, truth, strict=True))])  # fmt: skip
     print(f"{count} whole pulses, {len(lost)} refused")
     for kind, why in lost[:12]:
         print(f"    {kind}: {why}")
     for kind in ("clean", "level", "foot", "ringing"):
         for place, name in enumerate(("peak", "time", "impulse"), start=1):
-            pulls = np.array([r[place][0] / r[place][1] for r in rows if r[0] == kind])
-            near = 100.0 * np.mean(np.abs(pulls) < 2.0)
-            print(f"{kind:8} {name:8} {pulls.size:4} pulls: median {np.median(pulls):+.2f}, spread "
-                  f"{np.std(pulls):.2f}, within 2: {near:.1f} %")  # fmt: skip
+            errors = np.array([r[place] for r in rows if r[0] == kind]).reshape(-1, 2)
+            judge(f"{kind} {name}, relative", *errors.T)
     given = []
     for seed in range(first, first + count):
         kind, time, value = refused(np.random.default_rng(10_000 + seed))

@@ -10,6 +10,7 @@ import numpy as np
 from dentscope.reduce.measured import Measured
 from dentscope.reduce.scan.crater import reduce_scan
 from dentscope.studies.synthetic.scans import ScanTruth, random_truth, render
+from honesty import judge
 
 
 def _stated_blur(truth: ScanTruth) -> Measured:
@@ -19,7 +20,7 @@ def _stated_blur(truth: ScanTruth) -> Measured:
 
 
 def main(count: int) -> None:
-    scores: dict[str, list[tuple[float, float, float]]] = {}
+    scores: dict[str, list[tuple[float, float]]] = {}
     for seed in range(count):
         truth = random_truth(seed)
         found = reduce_scan(render(truth), blur=_stated_blur(truth))
@@ -32,18 +33,9 @@ def main(count: int) -> None:
         slid = reduce_scan(render(scar), blur=_stated_blur(scar))
         rows += [("depth of scar", slid.depth, scar.depth), ("sliding", slid.sliding, scar.sliding)]
         for name, value, known in rows:
-            scores.setdefault(name, []).append((value.value, value.std, known))
+            scores.setdefault(name, []).append((value.value / known - 1.0, value.std / known))
     for name, listed in scores.items():
-        value, std, known = np.array(listed).T
-        error, z = value / known - 1.0, (value - known) / std
-        print(
-            f"{name}: {np.isnan(value).sum()} not found, rms error "
-            f"{100 * np.sqrt(np.nanmean(error**2)):.3f} %, "
-            f"within 1 % {np.nanmean(abs(error) < 0.01):.1%}, "
-            f"worst {100 * np.nanmax(abs(error)):.2f} %, "
-            f"mean {100 * np.nanmean(error):+.3f} %, within 2 std {np.nanmean(abs(z) < 2.0):.1%}, "
-            f"mean std {100 * np.nanmean(std / known):.3f} %"
-        )
+        judge(f"{name}, relative", *np.array(listed).T)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import numpy as np
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
 from dentscope.studies.synthetic.sounds import bounces, random_bounces, record, write_wav
+from honesty import judge
 
 
 def main(count):
@@ -49,13 +50,7 @@ def main(count):
     print(f"bounces that match none of the record: {wrong.sum()}")
     print(f"inner bounces found, mean over the records: {100 * np.mean(found_part):.1f} %")
     for name, (x, true, std) in {"speed": a[~wrong, :3].T, "restitution": a[~wrong, 3:].T}.items():
-        off = x / true - 1.0
-        low, high = np.quantile(np.abs(off), (0.5, 0.95))
-        print(
-            f"{name}: median error {100 * low:.3f} %, 95 % of them below {100 * high:.2f} %, "
-            f"beyond 2 %: {(np.abs(off) > 0.02).sum()}, median bias {100 * np.median(off):+.4f} %, "
-            f"within two std {100 * np.mean(np.abs(x - true) < 2 * std):.1f} %"
-        )
+        judge(f"{name}, relative", x / true - 1.0, std / true)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from dentscope.reduce.measured import Measured
 from dentscope.reduce.video.reduction import Optics, reduce_video
 from dentscope.studies.synthetic.clips import random_ball, random_truth, render, with_faults
 from dentscope.studies.synthetic.tracks import fly
+from honesty import judge
 
 
 def one(seed: int, shape: str, faults: bool) -> list[list[float]]:
@@ -58,15 +59,7 @@ def one(seed: int, shape: str, faults: bool) -> list[list[float]]:
 def report(rows: np.ndarray) -> None:
     """Print bias, spread and honesty of each number, and the bounces furthest off."""
     for k, name in enumerate(("approach, relative", "rebound, relative", "restitution")):
-        error, std = rows[:, 2 * k], rows[:, 2 * k + 1]
-        pull = error / std
-        print(
-            f"{name}: bias {error.mean():+.5f} ± {error.std() / math.sqrt(error.size):.5f}, rms "
-            f"{np.sqrt(np.mean(error**2)):.5f}, median {np.median(np.abs(error)):.5f}, stated "
-            f"{np.median(std):.5f}; pulls: std {pull.std():.2f}, within 2: "
-            f"{np.mean(np.abs(pull) < 2.0):.1%}, largest {np.abs(pull).max():.1f}, beyond 6: "
-            f"{np.sum(np.abs(pull) > 6.0)}"
-        )
+        judge(name, rows[:, 2 * k], rows[:, 2 * k + 1])
     for row in rows[np.argsort(-np.abs(rows[:, 4] / rows[:, 5]))[:8]]:
         print(f"  seed {row[6]:.0f}: e {row[7]:.3f}, off {row[4]:+.4f} ± {row[5]:.4f}; "
               f"approach off {row[0]:+.4f} ± {row[1]:.4f}")  # fmt: skip
