@@ -15,7 +15,6 @@ STAGES = (
     "core", "fem", "models", "campaigns", "fitting", "dynamics", "recordings", "reduce",
     "discrepancy", "cli",
 )  # fmt: skip
-HOME = "core/observables.py"
 CHOICES = {
     ("dynamics/stepping/layout.py", "OBSERVABLES"): "order of the integrator's row",
     ("dynamics/tabulated/energy_route.py", "NAMES"): "order of a computed row",

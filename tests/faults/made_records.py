@@ -1,6 +1,7 @@
 """Made-up records for the tests: a pulse of 4 ms on noise, written as a table."""
 
 import numpy as np
+import pytest
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.kinds import load_kind
 
@@ -35,6 +36,20 @@ def table(path, cells, head="time_s,force_N", times=None):
 
 def recorded(path, value):
     return table(path, [f"{v:.3f}" for v in value])
+
+
+def workbook(path, rows, merged=(), title="Sheet", **others):
+    """Rows of the first sheet, whose cells may be merged, and of others by their names."""
+    book = pytest.importorskip("openpyxl").Workbook()
+    book.active.title = title
+    for name, cells in {title: rows, **others}.items():
+        sheet = book.active if name == title else book.create_sheet(name)
+        for row in cells:
+            sheet.append(row)
+    for area in merged:
+        book.active.merge_cells(area)
+    book.save(path)
+    return path
 
 
 def tracker_project(points, *, delta_t="5.0", angle=0.0):

@@ -43,7 +43,7 @@ def patched(path, tag, value):
      ("Compression", 65000, "cannot be read as a TIFF"),
      ("StripOffsets", 2**31, "cannot be read as a TIFF")],
 )  # fmt: skip
-def test_a_header_that_lies_is_one_line(tmp_path, tag, value, words, caplog):
+def test_a_header_that_lies_is_one_line(tmp_path, tag, value, words):
     path = clip(tmp_path / "clip.tif")
     patched(path, tag, value)
     with pytest.raises(InputError, match=words) as told:

@@ -9,6 +9,7 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.kinds import load_kind
+from made_records import workbook
 
 TOP, DEEP, BACK, POWER = 800.0, 6e-5, 9e-6, 1.4  # N, m, m, of unloading
 SLOPE = POWER * TOP / BACK
@@ -148,18 +149,12 @@ def test_the_table_with_load_and_depth_is_found_among_several(tmp_path):
 
 
 def test_a_workbook_without_a_load_on_its_first_sheet_names_the_others(tmp_path):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    book.active.title = "Results"
-    book.active.append(["Test", "Hardness"])
-    book.active.append([1, 6.7])
-    sheet = book.create_sheet("Test 001")
-    sheet.append(["Segment", "Displacement Into Surface", "Load On Sample", "Stiffness"])
-    sheet.append(["", "nm", "mN", "N/m"])
-    for row in record().T:
-        sheet.append(["", 1e9 * row[1], 1e3 * row[2], 1.0])
-    path = tmp_path / "a.xlsx"
-    book.save(path)
+    rows = [["Segment", "Displacement Into Surface", "Load On Sample", "Stiffness"],
+            ["", "nm", "mN", "N/m"]]  # fmt: skip
+    rows += [["", 1e9 * row[1], 1e3 * row[2], 1.0] for row in record().T]
+    path = workbook(
+        tmp_path / "a.xlsx", [["Test", "Hardness"], [1, 6.7]], title="Results", **{"Test 001": rows}
+    )
     kind = load_kind("press")
     with pytest.raises(InputError, match=r"load: no column .* --sheet, one of Results, Test 001"):
         kind.run(path, {}, source="test")

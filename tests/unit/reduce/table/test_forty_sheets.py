@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.reduce.table.sheet import read_sheet
+from made_records import workbook
 
 # trial, drop height, rebound height, dent diameter, note, operator, mean, standard deviation
 ONE_ROW = {
@@ -113,15 +114,6 @@ def text_table(path, rows, coding, lang):
     out = io.StringIO()
     csv.writer(out, delimiter="," if lang in ("zh", "ja") else ";").writerows(rows)
     path.write_bytes(out.getvalue().encode(coding))
-
-
-def workbook(path, rows, merged=()):
-    book = pytest.importorskip("openpyxl").Workbook()
-    for row in rows:
-        book.active.append(row)
-    for area in merged:
-        book.active.merge_cells(area)
-    book.save(path)
 
 
 def one_row(path, lang, rng):

@@ -10,6 +10,7 @@ from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.sheet import read_balls, read_sheet
 from dentscope.reduce.table.sheet.kinds import kind_of
 from dentscope.reduce.table.sheet.words import UNDERSTOOD
+from made_records import workbook
 
 GERMAN = """Nr.;Datum;Fallhöhe (cm);Rückprallhöhe (mm);Eindruckdurchmesser (mm);Bemerkung
 1;12.03.2025;5,0;34;0,515;
@@ -440,16 +441,8 @@ def test_another_table_below_is_told_and_not_read_by_these_headers(tmp_path):
 
 
 def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tmp_path):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    book.active.append(["Operator", "Jane"])
-    for name in ("Brass", "Steel"):
-        sheet = book.create_sheet(name)
-        sheet.append([])
-        sheet.append([None, "drop height (cm)", "e"])
-        sheet.append([None, 10, 0.6])
-    book.save(tmp_path / "a.xlsx")
-    found = read_sheet(tmp_path / "a.xlsx")
+    one = [[], [None, "drop height (cm)", "e"], [None, 10, 0.6]]
+    found = read_sheet(workbook(tmp_path / "a.xlsx", [["Operator", "Jane"]], Brass=one, Steel=one))
     assert [t.label for t in found.trials] == ["003"]
     assert [line.split(":")[0] for line in found.left_out] == ["sheet 'Sheet'", "sheet 'Steel'"]
     assert "--sheet 'Steel' takes it" in found.left_out[1]
@@ -457,38 +450,27 @@ def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tm
 
 
 def test_an_empty_workbook_is_called_so(tmp_path):
-    pytest.importorskip("openpyxl").Workbook().save(tmp_path / "a.xlsx")
+    path = workbook(tmp_path / "a.xlsx", [])
     with pytest.raises(InputError, match=r"a\.xlsx: empty"):
-        read_sheet(tmp_path / "a.xlsx")
+        read_sheet(path)
 
 
 def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    for row in (["Fallhöhe (cm)", "Eindruck Ø (mm)", "Bemerkung"], [2.5, "0,722", 5],
-                [10, "1,089", ""], [20, 1.234, ""]):  # fmt: skip
-        book.active.append(row)
-    book.save(tmp_path / "a.xlsx")
-    sheet = read_sheet(tmp_path / "a.xlsx")
+    rows = [["Fallhöhe (cm)", "Eindruck Ø (mm)", "Bemerkung"], [2.5, "0,722", 5],
+            [10, "1,089", ""], [20, 1.234, ""]]  # fmt: skip
+    sheet = read_sheet(workbook(tmp_path / "a.xlsx", rows))
     assert each(sheet, "dent_diameter_m") == pytest.approx([7.22e-4, 1.089e-3, 1.234e-3])
     assert sheet.trials[0].note == "5"
 
 
 def test_errors_of_a_spreadsheet_are_told(tmp_path):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    sheet = book.active
-    sheet.title = "a & b"
-    sheet.append([])
-    sheet.append(["drop height (cm)", "rebound height (cm)"])
-    for height in (20, 21, "#DIV/0!", 22):
-        sheet.append([30, height])
-    book.save(tmp_path / "a.xlsx")
-    found = read_sheet(tmp_path / "a.xlsx")
+    rows = [[], ["drop height (cm)", "rebound height (cm)"]]
+    rows += [[30, height] for height in (20, 21, "#DIV/0!", 22)]
+    path = workbook(tmp_path / "a.xlsx", rows, title="a & b")
+    found = read_sheet(path)
     assert len(found.trials) == 3
     assert any("row 5" in line and "'#DIV/0!'" in line for line in found.left_out)
-    table = read_columns(tmp_path / "a.xlsx")
-    assert table.cells[2][1] == "#DIV/0!"
+    assert read_columns(path).cells[2][1] == "#DIV/0!"
 
 
 def test_a_row_that_stands_twice_is_told(tmp_path):
