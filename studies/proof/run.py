@@ -14,9 +14,10 @@ import shutil
 import signal
 import tempfile
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+from functools import partial
 from itertools import islice, takewhile
 from multiprocessing import get_context
 from pathlib import Path
@@ -52,22 +53,27 @@ def draw_entry(tree: str, entry: Entry) -> Truth:
 
 
 def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
-    """Draw one case, write its recordings and its salted truth.
+    """Draw one case and conceal it; return the event that seals it."""
+    truth = draw_entry(tree, entry)
+    return conceal(run, entry.name, truth.record() | {"tree": tree}, partial(write_set, truth))
+
+
+def conceal(
+    run: Path, name: str, record: dict[str, Any], write: Callable[..., object]
+) -> dict[str, Any]:
+    """Write recordings (`write` takes folder and name) and salted truth.
 
     Returned: the event that seals both.
     """
-    truth = draw_entry(tree, entry)
     for place in ("sets", "truths", "verdicts"):
         (run / place).mkdir(parents=True, exist_ok=True)
-    folder = run / "sets" / entry.name
+    folder = run / "sets" / name
     shutil.rmtree(folder, ignore_errors=True)
-    write_set(truth, folder, name=entry.name)
-    record = truth.record() | {"salt": secrets.token_hex(16), "tree": tree}
-    path = run / "truths" / f"{entry.name}.json"
-    path.write_text(json.dumps(record, indent=1) + "\n")
+    write(folder, name=name)
+    path = run / "truths" / f"{name}.json"
+    path.write_text(json.dumps(record | {"salt": secrets.token_hex(16)}, indent=1) + "\n")
     return {
-        "event": "truth", "set": entry.name, "truth": digest_of(path),
-        "recordings": digest_of(folder),
+        "event": "truth", "set": name, "truth": digest_of(path), "recordings": digest_of(folder)
     }  # fmt: skip
 
 

@@ -44,9 +44,11 @@ def share(
     most: float = 1.0,
 ) -> Score:  # fmt: skip
     """Share of cases that pass a test, judged by its interval against a range of marks."""
-    chosen = list(cases)
-    of = len(chosen)
-    hits = sum(test(case) for case in chosen)
+    return _counted(name, [test(case) for case in cases], least=least, most=most)
+
+
+def _counted(name: str, passed: list[bool], *, least: float, most: float) -> Score:
+    hits, of = sum(passed), len(passed)
     mark = f"at least {least:.0%}" if most == 1.0 else f"at most {most:.0%}"
     if least > 0.0 and most < 1.0:
         mark = f"{least:.0%} to {most:.0%}"
@@ -104,12 +106,6 @@ def scores(cases: list[Case]) -> list[Score]:
     named = [c for c in single if c.named]
     sizes = [float(len(c.reported)) for c in single + pair if c.named]
     hits = [hit for c in single for hit in covered(c)]
-    low, high = interval(sum(hits), len(hits)) if hits else (math.nan, math.nan)
-    coverage = share("", [], bool, least=0.85, most=0.95)
-    if hits:
-        value = sum(hits) / len(hits)
-        state = state_of(low, high, least=0.85, most=0.95)
-        coverage = Score("", sum(hits), len(hits), value, low, high, coverage.mark, state)
     law_right = [c for c in null if not c.off]
     law_off = [c for c in null if c.off]
     return [
@@ -128,7 +124,7 @@ def scores(cases: list[Case]) -> list[Score]:
         _number("mean size of the set", sizes, np.mean, "at most 1.5", lambda v: v <= 1.5),
         _number("largest set", sizes, np.max, "at most 3", lambda v: v <= 3.0),
         share("forced name, outside the library", outside, lambda c: c.named, most=0.05),
-        Score("90 % intervals cover", *list(vars(coverage).values())[1:]),
+        _counted("90 % intervals cover", hits, least=0.85, most=0.95),
         _number(
             "rms of left-out trials falls by, median above size 20",
             [gain(c) for c in single if c.size > LARGE and c.named], np.median, "at least 2",

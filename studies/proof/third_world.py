@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import json
-import secrets
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,7 +21,7 @@ from ..third_world.effects import EFFECTS, OUTSIDE
 from ..third_world.sheet import write
 from .case import open_run
 from .rivals import read_lines
-from .run import ROOT, alone, diagnose, local_workers
+from .run import ROOT, alone, conceal, diagnose, local_workers
 from .seal import Ledger, digest_of, tree_hash
 from .third_world_page import keep, kept
 
@@ -59,17 +58,9 @@ def drawn(seed: str, entry: Entry) -> Truth:
     return draw(np.random.default_rng(int.from_bytes(text.digest()[:16], "little")), *entry[1:])
 
 
-def conceal(truth: Truth, run: Path, name: str) -> dict[str, Any]:
-    """Write recordings and salted truth; return the event that seals both."""
-    for place in ("sets", "truths", "verdicts"):
-        (run / place).mkdir(parents=True, exist_ok=True)
-    write(truth, run / "sets" / name, name=name)
-    path = run / "truths" / f"{name}.json"
-    path.write_text(json.dumps(truth.record() | {"salt": secrets.token_hex(16)}, indent=1) + "\n")
-    return {
-        "event": "truth", "set": name, "truth": digest_of(path),
-        "recordings": digest_of(run / "sets" / name),
-    }  # fmt: skip
+def _conceal(run: Path, seed: str, entry: Entry) -> dict[str, Any]:
+    truth = drawn(seed, entry)
+    return conceal(run, entry.name, truth.record(), partial(write, truth))
 
 
 def carry_on(run: Path, *, limit_s: float = 900.0) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -93,7 +84,7 @@ def _carry_on(run: Path, limit_s: float) -> Iterator[tuple[str, dict[str, Any]]]
     with local_workers(1) as workers:
         for entry in (listed[i] for i in order if listed[i].name not in done):
             if entry.name not in sealed:
-                ledger.add(**conceal(drawn(f"{plan}/{tree}", entry), run, entry.name))
+                ledger.add(**_conceal(run, f"{plan}/{tree}", entry))
             event = workers.submit(diagnose, run, entry.name, limit_s).result()
             ledger.add(**event)
             yield entry.name, event
@@ -102,7 +93,7 @@ def _carry_on(run: Path, limit_s: float) -> Iterator[tuple[str, dict[str, Any]]]
 def sample(out: Path, seed: str, numbers: list[int]) -> None:
     """Write sets of another seed with their truths."""
     for entry in (e for e in entries() if e.number in numbers):
-        conceal(drawn(seed, entry), out, entry.name)
+        _conceal(out, seed, entry)
 
 
 def main() -> None:
