@@ -81,12 +81,11 @@ def _residual(found: chapter3.Bench) -> Picture:
     axis.set_xticks([20, 50, 100, 200, 300], ["20", "50", "100", "200", "300"])
     axis.set_xticks([], minor=True)
     finish(axis, x="largest depth [um]", y="residual depth [um]")
-    left = float(sum(LAWS["ghaednia"].residual(pair, 148e-6))) * 1e6
-    found_left = {
+    others = {
         law.name: float(sum(law.residual(pair, 148e-6))) * 1e6
         for law in laws(*_ORIGINAL, "thornton-ning")
     }
-    others = {name: value for name, value in found_left.items() if name != "ghaednia"}
+    left = others.pop("ghaednia")
     note = (
         f"3.7 leaves {left:.0f} um of 148 um; figure 3.10 says 107 um, the measurement 118 um. At "
         f"148 um the others leave [um]: {', '.join(f'{k} {v:.0f}' for k, v in others.items())}. "
@@ -180,16 +179,8 @@ def _heights(
 
 def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
     """What the text says of figure 3.11, with the mass that fits."""
-    rows = [row for row in found.measured if row["observable"] == "residual_depth"]
-    times = {
-        law.name: [
-            strike(
-                found.scene(law, height=row["drop_height_m"], mass=found.mass_that_fits)
-            ).residual_m / row["value"]
-            for row in rows
-        ]
-        for law in chosen
-    }  # fmt: skip
+    mass = found.mass_that_fits
+    times = {law.name: _times(found, law, mass, "residual_depth") for law in chosen}
 
     def told(name: str) -> str:
         return f"{min(times[name]):.2f} to {max(times[name]):.2f}"
@@ -197,7 +188,7 @@ def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
     thornton, stiff = times["thornton-ning"], times["kogut-komvopoulos"]
     small = times["jackson-green-2007"] + times["kogut-etsion"]
     return (
-        f"Over the measured depth, with {found.mass_that_fits:g} kg. "
+        f"Over the measured depth, with {mass:g} kg. "
         + judged(
             (f"Kogut and Komvopoulos 1.3 (here {told('kogut-komvopoulos')})",
              all(abs(t - 1.3) < 0.1 for t in stiff)),
@@ -214,12 +205,7 @@ def _small_tip(found: chapter3.Bench) -> str:
     """Thornton and Ning's depth if the tip had the rod's own radius."""
     rod = replace(found.striker, tip_radius=found.striker.radius)
     blunt, law = replace(found, striker=rod), LAWS["thornton-ning"]
-    times = [
-        strike(blunt.scene(law, height=row["drop_height_m"], mass=rod.mass)).residual_m
-        / row["value"]
-        for row in found.measured
-        if row["observable"] == "residual_depth"
-    ]
+    times = _times(blunt, law, rod.mass, "residual_depth")
     return (
         f"With a tip of the rod's own radius, {1e3 * found.striker.radius:g} mm instead of 136.5, "
         f"Thornton and Ning's would be {min(times):.1f} to {max(times):.1f} times."
@@ -299,13 +285,18 @@ def deviations(
     found: chapter3.Bench, law: ContactLaw, *, mass: float, observable: str
 ) -> list[float]:
     """Relative deviation from each measured value, the lowest height first."""
-    off = []
+    return [x - 1.0 for x in _times(found, law, mass, observable)]
+
+
+def _times(found: chapter3.Bench, law: ContactLaw, mass: float, observable: str) -> list[float]:
+    """Ours over each measured value, the lowest height first."""
+    times = []
     for row in sorted(found.measured, key=lambda r: float(r["drop_height_m"])):
         if row["observable"] == observable:
             impact = strike(found.scene(law, height=row["drop_height_m"], mass=mass))
             ours = impact.restitution if observable == "restitution" else impact.residual_m
-            off.append(ours / row["value"] - 1.0)
-    return off
+            times.append(ours / row["value"])
+    return times
 
 
 def _mean_deviations(found: chapter3.Bench, chosen: list[ContactLaw], observable: str) -> str:
