@@ -6,7 +6,6 @@ from dataclasses import asdict
 
 import pytest
 import tomlkit
-from dentscope.cli import run
 from dentscope.cli.case import tell_unused
 from dentscope.cli.shared.keys import keys_of
 from dentscope.start.case_file import read_case, read_pair
@@ -105,7 +104,7 @@ def test_a_key_of_a_case_acts(key, tmp_path, capsys):
 @pytest.mark.parametrize(
     "key", [k for k in keys_of("inverse") if k.name != "shape"], ids=lambda k: f"{k.table}{k.name}"
 )
-def test_a_key_of_an_inverse_acts(key, tmp_path, capsys):
+def test_a_key_of_an_inverse_acts(key, tmp_path, prints):
     told = []
     for changed in (False, True):
         content = copy.deepcopy(INVERSE)
@@ -115,6 +114,6 @@ def test_a_key_of_an_inverse_acts(key, tmp_path, capsys):
         file = tmp_path / "a.toml"
         file.write_text(tomlkit.dumps(content))
         assert tomllib.loads(file.read_text()) == content
-        assert run(["inverse", str(file), "--out", str(tmp_path / "out")]) == 0
-        told.append((capsys.readouterr().out, (tmp_path / "out" / "a-inverse.csv").read_text()))
+        shown = prints("inverse", file, "--out", tmp_path / "out")
+        told.append((shown, (tmp_path / "out" / "a-inverse.csv").read_text()))
     assert told[0] != told[1]

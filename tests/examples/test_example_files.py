@@ -13,7 +13,7 @@ def table(path: Path) -> csv.DictReader:
     return csv.DictReader(path.read_text(encoding="utf-8").splitlines())
 
 
-def test_set_up_of_a_rod(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_set_up_of_a_rod(tmp_path: Path) -> None:
     assert run(["impact", str(EXAMPLES / "impact_rod.toml"), "--out", str(tmp_path)]) == 0
     rows = list(table(tmp_path / "impact_rod.csv"))
     assert [row["law"] for row in rows] == ["fitted", "jackson-green"]
@@ -21,7 +21,7 @@ def test_set_up_of_a_rod(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert all(abs(float(row["friction_impulse_ratio"]) - 0.13) < 1e-6 for row in rows)
 
 
-def test_scar_of_a_rod(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_scar_of_a_rod(tmp_path: Path) -> None:
     assert run(["inverse", str(EXAMPLES / "inverse_scar.toml"), "--out", str(tmp_path)]) == 0
     (row,) = table(tmp_path / "inverse_scar-inverse.csv")
     # Ghaednia's thesis, section 5.3.1, prints 1.40 ms for this impact

@@ -24,7 +24,6 @@ from dentscope.campaigns import (
 from dentscope.campaigns.executor import Ended
 from dentscope.campaigns.schema import CURVE, UNLOADING_PROFILES
 from dentscope.cli import campaign as command
-from dentscope.cli import run
 from dentscope.core import COMPLETED, Ending, InputError, Outcome
 from dentscope.fem import Profile, Unloading
 from made_cases import case_of, solution_of
@@ -224,14 +223,13 @@ def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
     assert {p.name for p in folder.iterdir()} == {f"other-{k}.h5" for k in range(16)}
 
 
-def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, capsys, monkeypatch):
+def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, prints, monkeypatch):
     monkeypatch.setattr(command, "PUBLISHED", folder / "data")
-    assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
-    told = capsys.readouterr().out
+    asked = ("campaign", "status", "--out", tmp_path / "none")
+    told = prints(*asked)
     assert "No run of your own" in told
     assert re.search(r"trial +6 done +0 failed", told)
-    run(["campaign", "status", "--json", "--out", str(tmp_path / "none")])
-    assert json.loads(capsys.readouterr().out)["published"]["trial"]["done"] == 6
+    assert json.loads(prints(*asked, "--json"))["published"]["trial"]["done"] == 6
 
 
 class Quick:
@@ -244,7 +242,7 @@ class Quick:
 
 
 def test_a_run_says_how_long_it_takes_and_how_far_it_is_from_the_published(
-    tmp_path, capsys, monkeypatch
+    tmp_path, prints, monkeypatch
 ):
     monkeypatch.setattr(executor, "LocalExecutor", Quick)
     monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
@@ -253,8 +251,7 @@ def test_a_run_says_how_long_it_takes_and_how_far_it_is_from_the_published(
         Store(tmp_path / "before").put(case, solved(case))
     publish(smoke, tmp_path / "before", tmp_path / "data")
     given = ["--design", "smoke", "--out", str(tmp_path / "run"), "--workers", "2"]
-    assert run(["campaign", "run", *given]) == 0
-    first, *middle = capsys.readouterr().out.splitlines()
+    first, *middle = prints("campaign", "run", *given).splitlines()
     assert re.search(r"12 to compute on 2 workers; about \d+ (s|min) here", first)
     (last,) = (i for i, s in enumerate(middle) if re.match(r"\[12/12, 0 s left\] done", s))
     (ended,) = (i for i, s in enumerate(middle) if s.startswith("12 done, 0 failed, 0 missing"))

@@ -306,8 +306,7 @@ def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
     assert run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
 
 
-def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, capsys):
-    from dentscope.cli import run
+def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, prints):
 
     run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
     first = Store(tmp_path).files()[0]
@@ -315,8 +314,7 @@ def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, capsy
     for path in strays:
         path.write_bytes(first.read_bytes())
     assert len(Store(tmp_path).read_all()) == 2
-    assert run(["campaign", "status", "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr().out
+    told = prints("campaign", "status", "--out", tmp_path)
     assert all(f"{path}: passed over" in told for path in strays)
 
 

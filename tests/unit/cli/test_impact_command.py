@@ -10,13 +10,11 @@ from dentscope.dynamics.files.setup import read_setup
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_template_runs_through_unchanged(kind, tmp_path, capsys):
+def test_a_template_runs_through_unchanged(kind, tmp_path, prints):
     name = f"{kind}-5.5mm"  # a point in a name is no ending
     file = tmp_path / f"{name}.toml"
-    assert run(["impact", "--new", kind, str(file)]) == 0
-    capsys.readouterr()
-    assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
-    printed = capsys.readouterr().out
+    prints("impact", "--new", kind, file)
+    printed = prints("impact", file, "--out", tmp_path / "out")
     table = [line for line in printed.splitlines() if line.startswith(" ")]
     assert max(len(line) for line in table) <= 80
     assert "…" not in printed
@@ -73,17 +71,15 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
         ("friction = []", "a list of numbers, or"),
     ],
 )
-def test_a_bad_sweep_is_one_line(sweep, message, tmp_path, capsys):
-    assert run(["impact", ball_with(tmp_path, sweep)]) == 2
-    told = capsys.readouterr().err
+def test_a_bad_sweep_is_one_line(sweep, message, tmp_path, errs):
+    told = errs("impact", ball_with(tmp_path, sweep))
     assert message in told
     assert len(told.strip().splitlines()) == 1
 
 
-def test_what_a_sweep_leaves_as_it_is_is_told(tmp_path, capsys):
+def test_what_a_sweep_leaves_as_it_is_is_told(tmp_path, prints):
     file = ball_with(tmp_path, "friction = [0.1, 0.2]\nmass_kg = [1e-3, 1e3]", "repeats = 2")
-    assert run(["impact", file, "--law", "hertz", "--exact", "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr().out
+    told = prints("impact", file, "--law", "hertz", "--exact", "--out", tmp_path)
     assert "hertz: 2 of 4 impacts go so deep, to" in told
     assert "sweep.friction changes nothing here" in told
     assert "sweep.mass_kg" not in told

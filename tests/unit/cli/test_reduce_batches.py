@@ -20,7 +20,7 @@ def peak(out, name):
     return json.loads((out / f"{name}-table.json").read_text())["values"]["peak_force_N"]["value"]
 
 
-def test_a_folder_is_reduced_file_by_file_onto_one_page(tmp_path, capsys):
+def test_a_folder_is_reduced_file_by_file_onto_one_page(tmp_path, errs, capsys):
     raw, out = tmp_path / "raw", tmp_path / "out"
     raw.mkdir()
     for name in ("b10", "b9"):
@@ -33,17 +33,16 @@ def test_a_folder_is_reduced_file_by_file_onto_one_page(tmp_path, capsys):
     assert "flat.csv" in told.err
     assert peak(out, "b9") == pytest.approx(800.0, rel=0.01)
     assert (out / "all-table.png").stat().st_size > 10_000
-    assert run(["reduce", "table", str(raw), "--out", str(out)]) == 2  # what all lack, once
-    assert capsys.readouterr().err.count("--holds") == 1
+    # what all lack, once
+    assert errs("reduce", "table", raw, "--out", out).count("--holds") == 1
 
 
-def test_a_list_gives_each_file_its_own_options(tmp_path, capsys):
+def test_a_list_gives_each_file_its_own_options(tmp_path, prints):
     for name, gain in (("a", 1.0), ("b", 0.1)):
         pulse(tmp_path / f"{name}.csv", gain=gain)
     (tmp_path / "list.csv").write_text("file,gain,mass_kg\na.csv,2,\nb.csv,20,0.5\n")
     given = ["reduce", "table", "--list", str(tmp_path / "list.csv"), "--holds", "force"]
-    assert run([*given, "--out", str(tmp_path / "out")]) == 0
-    assert "2 of 2 files reduced" in capsys.readouterr().out
+    assert "2 of 2 files reduced" in prints(*given, "--out", tmp_path / "out")
     assert [peak(tmp_path / "out", n) for n in "ab"] == pytest.approx([1600.0] * 2, rel=0.01)
     record = json.loads((tmp_path / "out/b-table.json").read_text())
     assert record["options"]["mass_kg"] == 0.5
@@ -73,9 +72,8 @@ def test_an_option_that_was_not_typed_leaves_the_choice_to_the_file(tmp_path):
     [("file,gian\na.csv,2\n", "gian"), ("name\na.csv\n", "name"), ("gain\n2\n", "file"),
      ("file,gain\na.csv,-2\n", "row 2"), ("file,gain\nnone.csv,2\n", "none.csv")],
 )  # fmt: skip
-def test_a_wrong_list_is_told(tmp_path, capsys, text, words):
+def test_a_wrong_list_is_told(tmp_path, errs, text, words):
     pulse(tmp_path / "a.csv")
     (tmp_path / "list.csv").write_text(text)
     given = ["reduce", "table", "--list", str(tmp_path / "list.csv"), "--holds", "force"]
-    assert run([*given, "--out", str(tmp_path / "out")]) == 2
-    assert words in capsys.readouterr().err
+    assert words in errs(*given, "--out", tmp_path / "out")

@@ -10,7 +10,6 @@ import pytest
 import typer
 from dentscope import __version__
 from dentscope.cli import app as assembly
-from dentscope.cli import run
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
 from dentscope.cli.shared.terminal import parts, say, show_table
 from rich.console import Console
@@ -41,10 +40,9 @@ def found_at(names):
 
 @pytest.mark.parametrize("width", [60, 80, 120])
 @pytest.mark.parametrize("names", commands(), ids=" ".join)
-def test_help_is_whole_at_every_width(names, width, monkeypatch, capsys):
+def test_help_is_whole_at_every_width(names, width, monkeypatch, prints):
     monkeypatch.setenv("COLUMNS", str(width))
-    assert run([*names, "-h"]) == 0
-    shown = capsys.readouterr().out
+    shown = prints(*names, "-h")
     assert max(map(len, shown.splitlines())) <= width
     assert "…" not in shown
     command = found_at(names)
@@ -54,12 +52,10 @@ def test_help_is_whole_at_every_width(names, width, monkeypatch, capsys):
         assert paragraph in letters(shown), paragraph
 
 
-def test_version_and_asking_for_nothing(capsys):
+def test_version_and_asking_for_nothing(prints):
     for line in (["--version"], ["version"]):
-        assert run(line) == 0
-        assert capsys.readouterr().out.strip() == __version__
-    assert run([]) == 0
-    assert "Your own:" in capsys.readouterr().out
+        assert prints(*line).strip() == __version__
+    assert "Your own:" in prints()
 
 
 @pytest.mark.parametrize("width", [60, 80])
@@ -85,19 +81,17 @@ def test_a_screen_too_narrow_for_a_number_wraps_it(capsys):
     assert all(word in shown.split() for row in rows for cell in row for word in cell.split())
 
 
-def test_a_file_to_start_from_needs_no_place_for_results(tmp_path, monkeypatch, capsys):
+def test_a_file_to_start_from_needs_no_place_for_results(tmp_path, monkeypatch, errs, prints):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "build").touch()
-    assert run(["impact", "--new", "ball", "my ball.toml"]) == 0
-    assert capsys.readouterr().out.endswith("then: dentscope impact 'my ball.toml'\n")
-    assert run(["impact", "my ball.toml"]) == 2
-    assert "--out" in capsys.readouterr().err
+    told = prints("impact", "--new", "ball", "my ball.toml")
+    assert told.endswith("then: dentscope impact 'my ball.toml'\n")
+    assert "--out" in errs("impact", "my ball.toml")
 
 
-def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
+def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, prints):
     monkeypatch.chdir(tmp_path)
-    assert run(["campaign", "show", "space-020"]) == 0
-    shown = capsys.readouterr().out
+    shown = prints("campaign", "show", "space-020")
     assert "F [N]" in shown
     assert "data/campaign" in shown
 

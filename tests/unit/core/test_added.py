@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import dentscope as ds
 import pytest
-from dentscope.cli import run as dentscope
 from dentscope.core import InputError
 from dentscope.core.inputs import added
 from dentscope.core.inputs.toml_input import InputTable
@@ -52,10 +51,9 @@ def importable(monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
 
 
-def test_a_law_of_another_package_is_found_by_its_name(packages, importable, capsys):
+def test_a_law_of_another_package_is_found_by_its_name(packages, importable, prints):
     packages(laws=("toy", f"{HERE}:TOY_LAW"))
-    assert dentscope(["laws", "list"]) == 0
-    assert "Of other packages: toy." in capsys.readouterr().out
+    assert "Of other packages: toy." in prints("laws", "list")
     assert law_named("toy").name == "johnson"
     with pytest.raises(InputError, match=r"'other'.*toy"):
         law_named("other")

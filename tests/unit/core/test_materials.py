@@ -10,21 +10,14 @@ from dentscope.core.rig import BodyTable, MaterialTable, Rig
 from dentscope.start.case_file import HardeningTable, RateTable
 
 
-def run(*words):
-    from dentscope.cli import run as command
-
-    return command(list(words))
-
-
-def blow(name, tmp_path, capsys):
+def blow(name, tmp_path, prints):
     file = tmp_path / "ball.toml"
     file.write_text(
         f'[target]\nmaterial = "{name}"\n[strikers.ball]\nshape = "sphere"\n'
         'tip_radius_m = 0.003\nmaterial = "tungsten-carbide-6co"\n'
         '[impact]\ndrop_height_m = 1.0\nlaws = ["fitted"]\n'
     )
-    assert run("impact", str(file), "--out", str(tmp_path / "out")) == 0
-    return capsys.readouterr().out
+    return prints("impact", file, "--out", tmp_path / "out")
 
 
 def test_materials_with_a_source_for_every_number():
@@ -150,29 +143,24 @@ def test_from_python():
      ("S355JR", "steel-s355"), ("EN AW-6082", "aluminium-6082-t6"), ("100Cr6", "steel-52100-"),
      ("stainless", "steel-17-4ph"), ("Teflon", "ptfe"), ("half hard Brass", "brass-c360")],
 )  # fmt: skip
-def test_any_word_of_name_designation_or_description_finds_it(words, name, capsys):
-    assert run("materials", words) == 0
-    told = capsys.readouterr().out
-    assert name in told
+def test_any_word_of_name_designation_or_description_finds_it(words, name, prints):
+    assert name in prints("materials", words)
 
 
-def test_polymers_have_a_word_of_warning(tmp_path, capsys):
+def test_polymers_have_a_word_of_warning(tmp_path, prints):
     polymers = [entry for entry in materials().values() if entry.kind == "polymer"]
     assert len(polymers) > 5
     assert all("stiffer and stronger the faster" in entry.note for entry in polymers)
-    assert f"ptfe: {materials()['ptfe'].note}" in blow("ptfe", tmp_path, capsys)
+    assert f"ptfe: {materials()['ptfe'].note}" in blow("ptfe", tmp_path, prints)
 
 
-def test_the_commands(capsys):
-    assert run("materials") == 0
-    assert "steel-1006\n" in capsys.readouterr().out
-    assert run("materials", "steel-1006") == 0
-    told = capsys.readouterr().out
+def test_the_commands(prints, errs):
+    assert "steel-1006\n" in prints("materials")
+    told = prints("materials", "steel-1006")
     assert "350 +- 28 MPa: johnson-cook-1983." in told
     assert "Proc. 7th Int. Symp. Ballistics" in told
     assert 'In a file: material = "steel-1006"; ' in told
-    assert run("materials", "steel-1106-hot-rolled") == 2
-    assert "steel-1010-hot-rolled" in capsys.readouterr().err
+    assert "steel-1010-hot-rolled" in errs("materials", "steel-1106-hot-rolled")
 
 
 def test_an_impact_of_two_named_materials():
@@ -188,15 +176,15 @@ def test_an_impact_of_two_named_materials():
     assert named["fitted"].restitution == pytest.approx(stated["fitted"].restitution, rel=1e-9)
 
 
-def test_hardening_and_rate_are_those_of_the_same_kind_first(tmp_path, capsys):
+def test_hardening_and_rate_are_those_of_the_same_kind_first(tmp_path, prints):
     """Half-hard brass hardens less than annealed brass, and than aluminium: the told -18 %."""
-    lines = blow("brass-c260-half-hard", tmp_path, capsys).splitlines()
+    lines = blow("brass-c260-half-hard", tmp_path, prints).splitlines()
     told = [line for line in lines if "others of its kind (brass, 1)" in line]
     assert len(told) == 2
     assert -6.0 < float(told[1].split("dent ")[1].split()[0]) < -1.0
 
 
-def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_path, capsys):
+def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_path, errs):
     """The name has the line, not the numbers that it would have given."""
     path = tmp_path / "typed.toml"
     path.write_text(
@@ -204,8 +192,7 @@ def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_pat
         '[strikers.ball]\nshape = "sphere"\nmaterial = "tungsten-carbide"\ntip_radius_m = 0.0025\n'
         "[impact]\ndrop_height_m = 0.5\n"
     )
-    assert run("impact", str(path)) == 2
-    lines = capsys.readouterr().err.splitlines()
+    lines = errs("impact", path).splitlines()
     assert len(lines) == 2
     assert "target.material: 'steel-1016-hot-rolled' (allowed: steel-1" in lines[0]
     assert "strikers.ball.material: 'tungsten-carbide' (allowed: tungsten-carbide-6co" in lines[1]

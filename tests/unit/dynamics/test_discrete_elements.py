@@ -73,7 +73,7 @@ def test_a_damping_that_cannot_is_left_out_and_the_others_get_theirs():
     assert len(text.splitlines()) == 1
 
 
-def test_command_writes_table_and_fragments(tmp_path, capsys):
+def test_command_writes_table_and_fragments(tmp_path, errs, prints):
     file = tmp_path / "pair.toml"
     file.write_text(
         "radius_m = 0.005\n[sphere]\nE_Pa = 200e9\nnu = 0.3\nSy_Pa = 600e6\n"
@@ -81,19 +81,17 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
         "[load]\nmax_delta_over_R = 0.01\n"
     )
     out = tmp_path / "dem"
-    assert run(["export", "dem", str(file), "--speed", "0.5,3", "--out", str(out)]) == 0
-    assert "hertz-tsuji-softened" in capsys.readouterr().out
+    assert "hertz-tsuji-softened" in prints("export", "dem", file, "--speed", "0.5,3", "--out", out)
     table = list(csv.DictReader((out / "dem.csv").read_text().splitlines()))
     assert len(table) == 2 * 2 * 6
     by_speed = [float(r["restitution"]) for r in table if r["model"] == "fitted"]
     assert by_speed[0] > by_speed[1]
     lines = (out / "lammps.in").read_text()
     assert len(laws_of(lines, "flat")) == len(laws_of(lines, "balls")) == 2
-    assert run(["export", "dem", str(file), "--speed", "0.5,2e3", "--out", str(out)]) == 0
-    assert "fitted: 1 of 2 impacts go so deep, to" in " ".join(capsys.readouterr().out.split())
+    told = prints("export", "dem", file, "--speed", "0.5,2e3", "--out", out)
+    assert "fitted: 1 of 2 impacts go so deep, to" in " ".join(told.split())
     for line in (["--speed", "10:1"], ["--speed", "1e5"], ["--mass", "-1"], ["--mass", "nan"]):
-        assert run(["export", "dem", str(file), *line]) == 2
-        assert len(capsys.readouterr().err.splitlines()) == 1
+        assert len(errs("export", "dem", file, *line).splitlines()) == 1
 
 
 def laws_of(lines, name):
@@ -137,12 +135,11 @@ impact_speed_m_s = { from = 0.1, to = 10, count = 21, spacing = "log" }
 """
 
 
-def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, capsys):
+def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, prints):
     """LAMMPS returned 0.92622, 0.69347 and 0.45486 with these parameters."""
     file = tmp_path / "ball.toml"
     file.write_text(BALL.replace("[strikers", "density_kg_m3 = 2700\n[strikers"))
-    assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr().out
+    told = prints("export", "dem", file, "--out", tmp_path)
     assert "target.E_Pa.std = 1e+09" in told
     assert "impact.support = half-space" in told
     table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))
@@ -228,17 +225,17 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
         assert depth == pytest.approx(float(law["depth_m"]), rel=1e-2)
 
 
-def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, capsys):
+def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, prints):
     file = tmp_path / "ball.toml"
     curve = '[target.hardening]\nlaw = "swift"\nK_Pa = 5e8\nn = 0.2\n'
     rigid = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
     file.write_text(rigid + 'laws = ["fitted", "hardening"]\n' + curve)
     assert read_ball(file).law == "hardening"
-    assert run(["export", "dem", str(file), "--law", "fitted", "--out", str(tmp_path)]) == 0
-    assert "fitted takes the first strength of each metal" in capsys.readouterr().out
+    told = prints("export", "dem", file, "--law", "fitted", "--out", tmp_path)
+    assert "fitted takes the first strength of each metal" in told
 
 
-def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, capsys):
+def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
     file = tmp_path / "ball.toml"
     rate = "\n[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 1.9\nrate_exponent = 0.2\n"
     plain = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
@@ -246,8 +243,7 @@ def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, capsys):
     for name, text in (("without", plain), ("with", plain + rate)):
         file.write_text(text)
         ball = read_ball(file)
-        assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
-        told = capsys.readouterr().out
+        told = prints("export", "dem", file, "--out", tmp_path)
         assert ("no rate is stated; with that of" in told) == (name == "without")
         assert ("with strain-rate-hardening; the lines for two" in told) == (name == "with")
         (row,) = substitutes(
@@ -259,8 +255,7 @@ def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, capsys):
     assert found["with"] > 1.2 * found["without"]
 
 
-def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, capsys):
+def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, errs):
     file = tmp_path / "rod.toml"
     assert run(["impact", "--new", "rod", str(file)]) == 0
-    assert run(["export", "dem", str(file)]) == 2
-    assert 'strikers.rod.shape: a rod (allowed: "sphere")' in capsys.readouterr().err
+    assert 'strikers.rod.shape: a rod (allowed: "sphere")' in errs("export", "dem", file)

@@ -252,10 +252,9 @@ def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
         read_setup(write(tmp_path, flat)).scene(HERTZ)
 
 
-def test_command_line_from_file(tmp_path, capsys):
+def test_command_line_from_file(tmp_path, prints):
     file = write(tmp_path, SETUP + "[sweep]\nimpact_speed_m_s = [0.5, 2]\n")
-    assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
-    printed = capsys.readouterr().out
+    printed = prints("impact", file, "--out", tmp_path / "out")
     assert "kinetic restitution" in printed
     for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
         assert (tmp_path / "out" / name).stat().st_size > 100

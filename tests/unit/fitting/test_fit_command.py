@@ -60,24 +60,21 @@ def test_page_keeps_what_stands_around_the_coefficients(tmp_path):
     assert text.count(BEGIN) == 1
 
 
-def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypatch, capsys):
+def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypatch, prints, errs):
     """The validation part stands in for a challenge: its errors are those that a fit reports."""
     page = tmp_path / "page.md"
     page.write_text(f"before\n{JUDGED_BEGIN}\nold\n{JUDGED_END}\nafter\n")
     monkeypatch.setattr(fit_command, "_PAGE", page)
     part = PAGE.parents[1] / "data" / "campaign" / "validation-2-1.h5"
-    assert run(["fit", "--judge", str(part), "--publish"]) == 0
-    assert "48 pairs" in capsys.readouterr().out
+    assert "48 pairs" in prints("fit", "--judge", part, "--publish")
     text = page.read_text()
     assert "48 pairs, drawn from a seed of their own." in text
     assert "| F [%] |" in text
     assert "old" not in text
     assert text.endswith("\nafter\n")
     smoke = part.with_name("smoke-1.h5")
-    assert run(["fit", "--judge", str(smoke)]) == 2
-    assert "no completed elastic-plastic case named validation or challenge" in (
-        capsys.readouterr().err
-    )
+    told = errs("fit", "--judge", smoke)
+    assert "no completed elastic-plastic case named validation or challenge" in told
 
 
 def test_a_challenge_of_other_coefficients_is_called_so():

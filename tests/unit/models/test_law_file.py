@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from dentscope.cli import run
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, law_named
 from dentscope.models.coefficients import COEFFICIENTS_FILE
@@ -37,16 +36,14 @@ def test_ones_own_fit_is_another_law(fitted):
     assert not np.array_equal(found, LAWS["fitted"].loading(PAIR, DEPTH))
 
 
-def test_ones_own_fit_is_exported_and_compared(fitted, tmp_path, capsys):
-    assert run(["export", "law", str(fitted), "--out", str(tmp_path / "own")]) == 0
-    assert run(["export", "law", "fitted", "--out", str(tmp_path / "shipped")]) == 0
+def test_ones_own_fit_is_exported_and_compared(fitted, tmp_path, prints):
+    prints("export", "law", fitted, "--out", tmp_path / "own")
+    prints("export", "law", "fitted", "--out", tmp_path / "shipped")
     own, shipped = (
         (tmp_path / name / "dentscope_contact.c").read_text() for name in ("own", "shipped")
     )
     assert own != shipped
-    capsys.readouterr()
-    assert run(["laws", "show", str(fitted)]) == 0
-    assert str(fitted) in capsys.readouterr().out.replace("\n", "")
+    assert str(fitted) in prints("laws", "show", fitted).replace("\n", "")
 
 
 @pytest.mark.parametrize(

@@ -27,13 +27,13 @@ def rows(folder, text) -> Path:
     return path
 
 
-def test_rows_go_below_those_that_are_there(folder, capsys):
+def test_rows_go_below_those_that_are_there(folder, prints):
     before = (folder / "trials.csv").read_text()
     first = read(folder)
     striker = first.trials.striker[0]
     path = rows(folder, f"{HEAD},x_day\nslow,{striker},90,1,0.7,0.01,2\n")
-    assert run(["recordings", "add", str(folder), str(path)]) == 0
-    assert f"1 trial added, {len(first.trials) + 1} trials in all" in capsys.readouterr().out
+    told = prints("recordings", "add", folder, path)
+    assert f"1 trial added, {len(first.trials) + 1} trials in all" in told
     now = read(folder)
     assert now.trials.trial == (*first.trials.trial, "slow")
     assert now.trials.varied["x_day"][-2:] == ("", "2")
@@ -46,19 +46,17 @@ def test_rows_go_below_those_that_are_there(folder, capsys):
         add_trials(folder, path)
 
 
-def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, capsys):
+def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, errs, prints):
     setup = (folder / "set.toml").read_text().partition("[noise]")
     (folder / "set.toml").write_text(f"{setup[0]}[noise]\nrestitution = 0.01{setup[2]}")
     sheet = rows(folder, "Versuch;Auftreffgeschwindigkeit [cm/s];e\nB1;120;0,71\nB2;140;0,69\n")
-    assert run(["recordings", "add", str(folder), "--from", str(sheet)]) == 0
-    assert "'Versuch': names of the trials" in capsys.readouterr().out
+    assert "'Versuch': names of the trials" in prints("recordings", "add", folder, "--from", sheet)
     now = read(folder).trials
     assert now.trial[-2:] == ("rows-B1", "rows-B2")
     assert now.impact_speed_m_s[-2:] == pytest.approx([1.2, 1.4])
     assert now.sessions[-2:].tolist() == [2.0, 2.0]
     before = (folder / "trials.csv").read_bytes()
-    assert run(["recordings", "add", str(folder), "--from", str(sheet)]) == 2
-    assert "'rows-B1' is in the set already" in capsys.readouterr().err
+    assert "'rows-B1' is in the set already" in errs("recordings", "add", folder, "--from", sheet)
     for words in (["--from", str(sheet), "--striker", "none"], [], ["a.csv", "--sheet", "b"]):
         assert run(["recordings", "add", str(folder), *words]) == 2
     assert (folder / "trials.csv").read_bytes() == before

@@ -67,16 +67,13 @@ names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
 )
 
 
-def test_list_goes_on_after_a_set_that_is_not_sound(tmp_path, capsys):
-    from dentscope.cli import run as use
+def test_list_goes_on_after_a_set_that_is_not_sound(tmp_path, errs, prints):
 
-    assert use(["recordings", "list", str(tmp_path)]) == 2
-    assert "no set in it" in capsys.readouterr().err
+    assert "no set in it" in errs("recordings", "list", tmp_path)
     for name in ("a", "b"):
         write(read(DATA / "leeb-steel-300hv"), tmp_path / name)
     (tmp_path / "a" / "trials.csv").write_text("trial\n")
-    assert use(["recordings", "list", str(tmp_path)]) == 0
-    first, second = capsys.readouterr().out.splitlines()
+    first, second = prints("recordings", "list", tmp_path).splitlines()
     assert first.startswith("a: ")
     assert "row 1, column striker: missing" in first
     assert second.startswith("b: ")

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.cli import run as command
 from dentscope.core.errors import InputError
 from dentscope.reduce.bounces import contacts
 from dentscope.reduce.bounces.contacts import find_bounces
@@ -32,12 +31,11 @@ def test_missing_rows_within_a_pulse_are_a_hole(tmp_path):
         run(table(tmp_path / "a.csv", value[kept], times=times))
 
 
-def test_a_refusal_draws_the_record(tmp_path, capsys):
+def test_a_refusal_draws_the_record(tmp_path, errs):
     path = recorded(tmp_path / "a.csv", noise())
-    given = ["reduce", "table", str(path), "--holds", "force"]
-    assert command([*given, "--out", str(tmp_path / "out")]) == 2
+    told = errs("reduce", "table", path, "--holds", "force", "--out", tmp_path / "out")
     assert (tmp_path / "out/a-table-refused.png").stat().st_size > 5000
-    assert "times the noise" in capsys.readouterr().err
+    assert "times the noise" in told
 
 
 def test_a_restitution_outside_0_to_1_is_refused(tmp_path):

@@ -126,12 +126,11 @@ def _write(path, content):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_each_mistake_gives_its_line(case, tmp_path, capsys):
+def test_each_mistake_gives_its_line(case, tmp_path, errs):
     kind, content, options, said = CASES[case]
     _write(tmp_path / "a.csv", content)
     command = ["reduce", kind, str(tmp_path / "a.csv"), "--out", str(tmp_path / "out"), *options]
-    assert run(command) == 2
-    message = capsys.readouterr().err.strip()
+    message = errs(*command).strip()
     assert said in message
     assert "Traceback" not in message
     # what is refused for what it shows is drawn, and nothing else is written
@@ -150,32 +149,29 @@ NONE = {"restitution": Measured(float("nan"), 0.1)}
     ],
 )
 def test_what_a_reader_of_ours_does_not_foresee_is_one_line(
-    reader, said, tmp_path, monkeypatch, capsys
+    reader, said, tmp_path, monkeypatch, errs
 ):
     monkeypatch.setattr("dentscope.reduce.sound.kind.reduce", reader)
     (tmp_path / "a.csv").write_text(TIMES)
-    assert run(["reduce", "sound", str(tmp_path / "a.csv"), "--out", str(tmp_path / "out")]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    (line,) = errs("reduce", "sound", tmp_path / "a.csv", "--out", tmp_path / "out").splitlines()
     assert said in line
 
 
-def test_a_file_that_is_not_there(tmp_path, capsys):
+def test_a_file_that_is_not_there(tmp_path, errs):
     for kind in ("table", "sound", "video", "tip", "scan", "mocap"):
         options = {
             "table": ["--holds", "force"], "video": ["--frame-rate-hz", "9"],
             "mocap": ["--shape", "sphere", "--tip-radius-m", "1"],
         }.get(kind, [])  # fmt: skip
-        assert run(["reduce", kind, str(tmp_path / "none.x"), *options]) == 2
-        assert "none.x" in capsys.readouterr().err
+        assert "none.x" in errs("reduce", kind, tmp_path / "none.x", *options)
 
 
-def test_mistakes_leave_a_set_as_it_was(tmp_path, capsys):
+def test_mistakes_leave_a_set_as_it_was(tmp_path, errs):
     where = tmp_path / "set"
     (tmp_path / "a.csv").write_text(ROWS)
     command = ["reduce", "table", str(tmp_path / "a.csv"), "--holds", "trials"]
     assert run([*command, "--into", str(where)]) == 0
     before = {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()}
     (tmp_path / "a.csv").write_text("drop height,restitution\n3.0,0.5\n")
-    assert run([*command, "--into", str(where)]) == 2
-    assert "the header names no unit" in capsys.readouterr().err
+    assert "the header names no unit" in errs(*command, "--into", where)
     assert {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()} == before

@@ -18,15 +18,11 @@ PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)
 
 @pytest.mark.parametrize("name", [n for n in PATHS if "\x00" not in n])
 @pytest.mark.parametrize("place", ["--out", "--into"])
-def test_an_option_names_no_other_folder(tmp_path, capsys, name, place):
+def test_an_option_names_no_other_folder(tmp_path, errs, name, place):
     raw = tmp_path / "raw.csv"
     raw.write_text(TABLE)
-    code = run(
-        ["reduce", "table", str(raw), "--holds", "trials", "--trial", name, place,
-         str(tmp_path / "o" / "o")]
-    )  # fmt: skip
-    told = capsys.readouterr().err
-    assert code == 2, told
+    command = ("reduce", "table", raw, "--holds", "trials", "--trial", name)
+    told = errs(*command, place, tmp_path / "o" / "o")
     assert "trial" in told
     assert "text that can name a file" in told
     assert sorted(p.name for p in tmp_path.iterdir()) == ["raw.csv"]

@@ -191,7 +191,7 @@ def test_tension_and_leeb_tables_into_a_set(tmp_path):
     assert found.flows["target"].strength == pytest.approx(310e6, rel=0.03)
 
 
-def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, capsys):
+def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, prints):
     strain = np.linspace(0.0, 0.1, 300)
     for name, slope in (("a", 1e9), ("b", 2e9)):
         stress = np.minimum(200e9 * strain, 300e6 + slope * strain)
@@ -201,9 +201,8 @@ def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, cap
     own = "plastic_strain,true_stress_Pa\n0,2.5e8\n0.10,4.00e8\n"
 
     def pulled(name, body="target"):
-        command = ["reduce", "table", str(tmp_path / f"{name}.csv"), "--holds", "tension"]
-        assert run([*command, "--into", str(where), "--body", body]) == 0
-        return capsys.readouterr().out
+        command = ("reduce", "table", tmp_path / f"{name}.csv", "--holds", "tension")
+        return prints(*command, "--into", where, "--body", body)
 
     assert "target-flow.csv" in pulled("a").partition("written: ")[2]
     first = (where / "target-flow.csv").read_text()

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.gates import Refused
@@ -199,14 +198,13 @@ def test_loads_out_of_range_beside_depths_are_no_heading(tmp_path):
         reduced(tmp_path / "a.csv", content, machine_compliance_m_N=0.0)
 
 
-def test_presses_become_rows_of_a_set(tmp_path, capsys):
+def test_presses_become_rows_of_a_set(tmp_path, prints):
     (tmp_path / "a.csv").write_text(text(record()))
-    command = ["reduce", "press", str(tmp_path / "a.csv"), "--machine-compliance-m-N", "0"]
+    command = ("reduce", "press", tmp_path / "a.csv", "--machine-compliance-m-N", "0")
     where = tmp_path / "set"
-    assert run([*command, "--tip-radius-m", "0.0025", "--into", str(where)]) == 0
+    assert "rows of" in prints(*command, "--tip-radius-m", "0.0025", "--into", where)
     found = read(where, unfinished=True)
     assert found.trials.pressed.tolist() == [True]
     assert found.trials.load_N[0] == pytest.approx(TOP, rel=0.005)
     assert found.setup.strikers["ball"].tip_radius_m.value == 0.0025
     assert {p.suffix for p in (where / "reduced").iterdir()} == {".json", ".png"}
-    assert "rows of" in capsys.readouterr().out

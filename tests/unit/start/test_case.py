@@ -191,12 +191,11 @@ WRONG_FLOW = [
     ("text", "old", "new", "words"),
     [*((GOOD, *row) for row in WRONG), *((HARD, *row) for row in WRONG_FLOW)],
 )
-def test_a_mistake_is_one_line_with_its_key(tmp_path, capsys, text, old, new, words):
+def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, text, old, new, words):
     (tmp_path / "curve.csv").write_text(CURVE)
     path = tmp_path / "case.toml"
     path.write_text(text.replace(old, new))
-    assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 2
-    message = capsys.readouterr().err.strip()
+    message = errs("case", path, "--out", tmp_path / "out").strip()
     assert len(message.splitlines()) == 1, message
     for word in [str(path), *words]:
         assert word in message

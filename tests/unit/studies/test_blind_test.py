@@ -32,23 +32,19 @@ def laboratory(tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-def test_sealed_answered_and_opened_as_the_page_says(laboratory, monkeypatch, capsys) -> None:
-    assert run(SEAL) == 0
-    assert "2 sets, SHA-256" in capsys.readouterr().out
+def test_sealed_answered_and_opened_as_the_page_says(laboratory, monkeypatch, prints) -> None:
+    assert "2 sets, SHA-256" in prints(*SEAL)
     assert "tilt" not in (laboratory / "blind/seals.jsonl").read_text()
     monkeypatch.setattr(subprocess, "run", lambda command, check: run(command[1:]))
     code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[0]
     (laboratory / "method.py").write_text(code)
     runpy.run_path(str(laboratory / "method.py"))
-    capsys.readouterr()
-    assert run(SCORE) == 0
-    assert "keep the file" in capsys.readouterr().out
-    assert run(OPEN) == 0
-    (front,) = (x for x in capsys.readouterr().out.splitlines() if "truth in front" in x)
+    assert "keep the file" in prints(*SCORE)
+    (front,) = (x for x in prints(*OPEN).splitlines() if "truth in front" in x)
     assert float(front.split()[3]) in (0.0, 0.5)  # two equal sets: one at most is right
 
 
-def test_what_changed_after_the_seal_is_not_scored(laboratory, capsys) -> None:
+def test_what_changed_after_the_seal_is_not_scored(laboratory, errs) -> None:
     run(SEAL)
     rows = "".join(f"{name},baseline,1\n" for name in SETS)
     (laboratory / "answers.csv").write_text(HEAD + rows)
@@ -57,17 +53,13 @@ def test_what_changed_after_the_seal_is_not_scored(laboratory, capsys) -> None:
     records = json.loads(kept)
     records["series-02"]["mechanisms"] = ["tilt"]
     truths.write_text(json.dumps(records))
-    capsys.readouterr()
-    assert run(OPEN) == 2
-    assert "series-02: not the truth that was sealed" in capsys.readouterr().err
+    assert "series-02: not the truth that was sealed" in errs(*OPEN)
     truths.write_text(kept)
     assert run(OPEN) == 0
     table = laboratory / "blind/sets/series-01/trials.csv"
     table.write_text(table.read_text() + "\n")
-    assert run(OPEN) == 2
-    assert "series-01: not the recordings that were sealed" in capsys.readouterr().err
-    assert run(SEAL) == 2
-    assert "seal once" in capsys.readouterr().err
+    assert "series-01: not the recordings that were sealed" in errs(*OPEN)
+    assert "seal once" in errs(*SEAL)
 
 
 @pytest.mark.parametrize(
@@ -81,10 +73,9 @@ def test_what_changed_after_the_seal_is_not_scored(laboratory, capsys) -> None:
         ("series-01,baseline,0.5\nseries-01,tilt,0.5\nseries-02,tilt,1\n", "baseline or tilt"),
     ],
 )
-def test_a_mistake_in_the_acts_is_one_line(laboratory, capsys, rows, told) -> None:
+def test_a_mistake_in_the_acts_is_one_line(laboratory, errs, rows, told) -> None:
     (laboratory / "acts.csv").write_text(HEAD + rows)
-    assert run(SEAL) == 2
-    assert told in capsys.readouterr().err
+    assert told in errs(*SEAL)
     assert not (laboratory / "blind/seals.jsonl").exists()
     assert not (laboratory / "blind-truths.json").exists()
 

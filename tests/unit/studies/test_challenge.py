@@ -12,7 +12,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope import recordings
-from dentscope.cli import run
 from dentscope.core import InputErrors
 from dentscope.dynamics import mechanisms
 from dentscope.studies.challenge import answers, archive, ask, draw, loop, own
@@ -69,15 +68,14 @@ def test_who_has_a_truth_can_draw_its_set_again(tmp_path) -> None:
 
 
 def test_a_strangers_method_is_scored_by_the_pages_instructions(
-    challenge, tmp_path, monkeypatch, capsys
+    challenge, tmp_path, monkeypatch, prints
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "challenge").symlink_to(challenge)
     code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[0]
     (tmp_path / "method.py").write_text(code)
     runpy.run_path(str(tmp_path / "method.py"))
-    assert run(["challenge", "score", "challenge/open", "answers.csv"]) == 0
-    printed = capsys.readouterr().out
+    printed = prints("challenge", "score", "challenge/open", "answers.csv")
     (row,) = [line for line in PAGE.splitlines() if line.startswith("| these ten lines |")]
     told = told_in(printed)
     assert told == [cell.strip() for cell in row.split("|")[2:-1]], (
@@ -129,17 +127,16 @@ SURE = {name: f"{name},baseline,1\n" for name in SETS}
         (None, "no such file"),
     ],
 )  # fmt: skip
-def test_a_mistake_in_the_answers_is_one_line(challenge, tmp_path, capsys, text, told) -> None:
+def test_a_mistake_in_the_answers_is_one_line(challenge, tmp_path, errs, text, told) -> None:
     path = tmp_path / "answers.csv"
     if text is not None:
         path.write_text(text)
-    assert run(["challenge", "score", str(challenge / "open"), str(path)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    (line,) = errs("challenge", "score", challenge / "open", path).splitlines()
     assert told in line
     assert "answers.csv" in line
 
 
-def test_other_mistakes(challenge, tmp_path, capsys) -> None:
+def test_other_mistakes(challenge, tmp_path, errs) -> None:
     path = tmp_path / "answers.csv"
     path.write_text(HEAD + "".join(SURE.values()))
     wrong = tmp_path / "wrong.json"
@@ -150,12 +147,11 @@ def test_other_mistakes(challenge, tmp_path, capsys) -> None:
         (["score", str(challenge / "open"), str(path), "--truths", str(wrong)], "not the truths"),
         (["score", str(challenge / "open"), str(path), "--truths", str(path)], "not valid JSON"),
     ):
-        assert run(["challenge", *arguments]) == 2
-        (line,) = capsys.readouterr().err.splitlines()
+        (line,) = errs("challenge", *arguments).splitlines()
         assert told in line
 
 
-def test_sealed_sets_wait_for_their_truths(tmp_path, monkeypatch, capsys) -> None:
+def test_sealed_sets_wait_for_their_truths(tmp_path, monkeypatch, errs, prints) -> None:
     """Drawn, packed, opened: a truth that is not the sealed one is refused before it is used."""
     work, data = tmp_path / "work", tmp_path / "data"
     for name, names in (("open-001", []), ("sealed-001", ["tilt"]), ("sealed-002", [])):
@@ -173,25 +169,20 @@ def test_sealed_sets_wait_for_their_truths(tmp_path, monkeypatch, capsys) -> Non
     monkeypatch.setattr(archive, "DATA", data)
     archive.seals.cache_clear()
     folder = tmp_path / "got"
-    assert run(["challenge", "get", str(folder)]) == 0
-    assert "sealed: 2 sets" in capsys.readouterr().out
+    assert "sealed: 2 sets" in prints("challenge", "get", folder)
     path = tmp_path / "answers.csv"
     path.write_text(HEAD + "sealed-001,tilt,0.9\nsealed-001,baseline,0.1\nsealed-002,baseline,1\n")
     score = ["challenge", "score", str(folder / "sealed"), str(path)]
-    assert run(score) == 0
-    assert "truths are sealed" in capsys.readouterr().out
+    assert "truths are sealed" in prints(*score)
     truths = work / "sealed-truths.json"
-    assert run([*score, "--truths", str(truths)]) == 0
-    assert f"{0.5 * math.log(0.9):.3f}" in capsys.readouterr().out
+    assert f"{0.5 * math.log(0.9):.3f}" in prints(*score, "--truths", truths)
     found = json.loads(truths.read_text())
     assert set(found) == {"sealed-001", "sealed-002"}
     found["sealed-001"]["mechanisms"] = []
     truths.write_text(json.dumps(found))
-    assert run([*score, "--truths", str(truths)]) == 2
-    assert "sealed-001: not the truth that was sealed" in capsys.readouterr().err
+    assert "sealed-001: not the truth that was sealed" in errs(*score, "--truths", truths)
     (data / "sealed.zip").write_bytes((data / "open.zip").read_bytes())
-    assert run(["challenge", "get", str(tmp_path / "again")]) == 2
-    assert "not what was published" in capsys.readouterr().err
+    assert "not what was published" in errs("challenge", "get", tmp_path / "again")
     archive.seals.cache_clear()
 
 
@@ -260,7 +251,7 @@ def asked(game: Path, name: str, text: str) -> list[list[str]]:
     return ask.ask(game, game.with_name("game-judge"), name, rows)[0]
 
 
-def test_a_random_asker_is_scored_by_the_page(game, monkeypatch, capsys) -> None:
+def test_a_random_asker_is_scored_by_the_page(game, monkeypatch, prints) -> None:
     monkeypatch.chdir(game.parent)
     code = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)[1]
 
@@ -271,8 +262,7 @@ def test_a_random_asker_is_scored_by_the_page(game, monkeypatch, capsys) -> None
 
     monkeypatch.setattr("subprocess.run", bought)
     exec(compile(code, "page", "exec"), {})
-    assert run(["challenge", "score", "game", "answers.csv"]) == 0
-    told = capsys.readouterr().out
+    told = prints("challenge", "score", "game", "answers.csv")
     assert re.search(r"trials bought\W+1\.000", told)
     # all names alike before and after
     assert re.search(r"nats a trial\W+0\.000", told)

@@ -75,27 +75,22 @@ def test_a_rebound_is_a_height_or_a_speed_by_its_unit(tmp_path, text):
     assert restitutions(read_text(tmp_path, text)) == pytest.approx([0.6])
 
 
-def test_the_command_makes_a_set(tmp_path, capsys):
+def test_the_command_makes_a_set(tmp_path, errs, prints):
     path = tmp_path / "Fallversuche.csv"
     path.write_bytes(GERMAN.encode("cp1252"))
     folder = tmp_path / "drops of May"
     command = ["recordings", "new", str(folder), "--from", str(path)]
-    assert run([*command, "--dry-run", "--column", "Datum=note"]) == 0
-    told = capsys.readouterr().out
+    told = prints(*command, "--dry-run", "--column", "Datum=note")
     assert "schlecht zu sehen" in told
     assert "Fallversuche-3" in told
     assert "'Datum': note (5 cells)" in told
     assert not folder.exists()
-    assert run([*command, "--column", "Datun=note"]) == 2
-    assert "no header 'datun' (allowed: Nr., Datum, " in capsys.readouterr().err
-    assert run([*command, "--column", "Datum=day"]) == 2
-    assert "allowed: HEADER=quantity unit" in capsys.readouterr().err
+    assert "no header 'datun' (allowed: Nr., Datum, " in errs(*command, "--column", "Datun=note")
+    assert "allowed: HEADER=quantity unit" in errs(*command, "--column", "Datum=day")
     path.write_bytes(GERMAN.replace(";113;", ";311;").encode("cp1252"))
-    assert run(command) == 2
-    assert capsys.readouterr().err.startswith(f"{path}: row 3, column restitution: 1.2")
+    assert errs(*command).startswith(f"{path}: row 3, column restitution: 1.2")
     path.write_bytes(GERMAN.encode("cp1252"))
-    assert run(command) == 0
-    told = capsys.readouterr().out
+    told = prints(*command)
     assert "'Fallhöhe (cm)': drop_height_m (4 cells)" in told
     assert "'k.A.' is no length" in told
     made = read(folder, unfinished=True)
@@ -103,8 +98,7 @@ def test_the_command_makes_a_set(tmp_path, capsys):
     assert f",{math.sqrt(0.426):.12g}," in (folder / "trials.csv").read_text()
     assert made.trials.note[2] == "schlecht zu sehen"
     assert list(made.setup.strikers) == ["ball"]
-    assert run(command) == 2
-    assert "there is one already" in capsys.readouterr().err
+    assert "there is one already" in errs(*command)
 
 
 @pytest.mark.parametrize(
@@ -579,12 +573,11 @@ def test_a_set_has_one_ball_and_a_sheet_of_several_is_asked_which(tmp_path, ball
     assert restitutions(only) == [0.5, 0.6]
 
 
-def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, capsys):
+def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, errs, prints):
     file, folder = tmp_path / "drops.csv", tmp_path / "set"
     rows = "K1;1;20;5\nK2;1;20;10\nK1;2;40;9\nK2;2;40;20\n"
     file.write_text(f"Kugel;Nr.;Fallhöhe (cm);Rückprallhöhe (cm)\n{rows}", encoding="utf-8")
-    assert run(["recordings", "new", str(folder), "--from", str(file)]) == 0
-    told = capsys.readouterr().out
+    told = prints("recordings", "new", folder, "--from", file)
     assert "2 trials of K1" in told
     assert told.count("to fill in:") == 1
     made = read(folder, unfinished=True)
@@ -593,8 +586,7 @@ def test_each_ball_of_a_sheet_becomes_a_striker(tmp_path, capsys):
     assert made.trials.observables["restitution"] ** 2 == pytest.approx([0.25, 0.225, 0.5, 0.5])
     # a height that is written once is that of the row above, whatever its ball
     file.write_text(file.read_text(encoding="utf-8").replace("K2;2;40", "K2;2;"), encoding="utf-8")
-    assert run(["recordings", "new", str(tmp_path / "other"), "--from", str(file)]) == 2
-    assert "several balls: K1, K2" in capsys.readouterr().err
+    assert "several balls: K1, K2" in errs("recordings", "new", tmp_path / "other", "--from", file)
 
 
 @pytest.mark.parametrize("header", ["Kugel", "striker"])
