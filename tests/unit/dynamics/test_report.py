@@ -348,27 +348,12 @@ def test_a_published_law_carries_its_distance_from_finite_elements():
 
 
 def test_a_restitution_above_one_says_where_its_energy_comes_from():
-    rod = """
-[target]
-E_Pa = 2e11
-nu = 0.3
-[strikers.rod]
-shape = "rod"
-tip_radius_m = 0.005
-radius_m = 0.005
-length_m = 0.1
-mass_kg = 0.06
-E_Pa = 2e11
-nu = 0.3
-[friction]
-coefficient = 0.5
-[impact]
-angle_deg = 70
-impact_speed_m_s = 1.0
-approach_tangential_m_s = -2.0
-laws = ["fitted", "hertz"]
-"""
-    found = blow(rod, "jackson-green", "hertz")
+    steel = {"E_Pa": 2e11, "nu": 0.3}
+    rod = {"shape": "rod", "radius_m": 0.005, "length_m": 0.1, "mass_kg": 0.06, **steel}
+    leans = {"angle_deg": 70, "approach_tangential_m_s": -2.0}
+    rough = {"friction": {"coefficient": 0.5}, "gravity_m_s2": 9.81}
+    met = ball_setup(target=steel, ball=rod, impact=leans, **rough)
+    found = blow(met.content, "jackson-green", "hertz")
     impact = found["hertz"]
     assert impact.restitution > 1.05
     (line,) = (line for line in found.checks() if line.startswith("hertz: a restitution of"))
