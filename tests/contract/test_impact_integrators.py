@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.core import Material
 from dentscope.dynamics import (
     Approach,
     Friction,
@@ -14,7 +13,6 @@ from dentscope.dynamics import (
     Support,
     arrays_of,
     rod_modes,
-    scene_of,
     strike,
     strike_many,
     strike_rows,
@@ -26,10 +24,9 @@ from dentscope.models.published.jackson_green import JACKSON_GREEN
 from dentscope.models.published.kogut_etsion import KOGUT_ETSION
 from dentscope.models.published.stronge import STRONGE
 from dentscope.studies.oracle import oracle_impact
+from made_scenes import ROD, STEEL, on_iron
 
 LAWS = (HERTZ, JACKSON_GREEN, GHAEDNIA)
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 BALANCES = ("energy_residual", "momentum_residual", "angular_residual")
 
 
@@ -48,8 +45,8 @@ def random_scene(rng: np.random.Generator, number: int) -> Scene:
         spin=float(rng.choice([0.0, 20.0 * rng.normal()])),
     )
     sprung = Support(mass=1.0, stiffness=1e8)
-    return scene_of(
-        LAWS[number % 3], sphere=STEEL, flat=IRON, striker=striker, approach=approach,
+    return on_iron(
+        LAWS[number % 3], striker=striker, approach=approach,
         friction=Friction(float(rng.choice([0.0, 0.1, 0.3, 0.8]))),
         support=sprung if rng.random() < 0.2 else Support(),
     )  # fmt: skip
@@ -120,21 +117,18 @@ def test_integrators_agree_on_contacts_that_give_way_sideways() -> None:
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-12, 3e-13])
 def test_a_second_touch_may_turn_near_the_end_of_its_bed(tolerance: float) -> None:
     """A ball on a spring comes back before it leaves; there the depth cannot carry the motion."""
-    scene = scene_of(
-        STRONGE, sphere=STEEL, flat=IRON, striker=Striker(mass=0.5396, tip_radius=0.02484),
-        approach=Approach(0.1255), friction=Friction(0.1), support=Support(1.0, 1e8),
+    scene = on_iron(
+        STRONGE, striker=Striker(mass=0.5396, tip_radius=0.02484), approach=Approach(0.1255),
+        friction=Friction(0.1), support=Support(1.0, 1e8),
     )  # fmt: skip
     assert_agree(scene, 1e-8, settings=Settings(tolerance=tolerance))
 
 
 def test_integrators_agree_on_a_vibrating_rod_with_several_contacts() -> None:
-    rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
-    modes = rod_modes(0.3048, 0.0088, STEEL, mass=0.4607, count=3)
+    modes = rod_modes(ROD.length, ROD.radius, STEEL, mass=ROD.mass, count=3)
     for angle in (45.0, 70.0):
-        scene = scene_of(
-            HERTZ, sphere=STEEL, flat=IRON, striker=rod, friction=Friction(0.15),
-            approach=Approach(1.0, math.radians(angle)), modes=modes,
-        )  # fmt: skip
+        leans = Approach(1.0, math.radians(angle))
+        scene = on_iron(HERTZ, approach=leans, friction=Friction(0.15), modes=modes)
         assert_agree(scene, 2e-7, settings=Settings(tolerance=1e-10))
         # The flight before the last contact lasts half a look: whether the parting is a hair
         # inside or outside the flat must not decide about it.

@@ -8,11 +8,11 @@ from dentscope.core import InputError
 from dentscope.core.drag import Fluid, air, rod_drag_across
 from dentscope.dynamics import Striker
 from dentscope.dynamics.drag import flown
+from made_scenes import ROD
 from scipy.optimize import brentq
 
 WATER = Fluid(1000.0, 1e-3)
 BALL = Striker(mass=0.0027, tip_radius=0.02)
-ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 
 
 def sphere(diameter: float, density: float) -> Striker:

@@ -1,18 +1,17 @@
 """Normal impacts by work alone, against exact solutions and against the time steps."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
-from dentscope.core import Material, Pair
-from dentscope.dynamics import Approach, Friction, Settings, Striker, Support, scene_of, strike
+from dentscope.core import Pair
+from dentscope.dynamics import Approach, Friction, Settings, Support, strike
 from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts, why_not
 from dentscope.models import LAWS
+from made_scenes import IRON, STEEL, on_iron
 from scipy.special import gamma
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
-ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 PAIR = Pair(STEEL, IRON, 0.0088)
 
 
@@ -49,9 +48,7 @@ def test_the_time_steps_end_alike(name: str) -> None:
     speeds = np.geomspace(0.05, 10.0, 7)
     found = by_work(LAWS[name], speeds)
     for k, speed in enumerate(speeds):
-        scene = scene_of(
-            LAWS[name], sphere=STEEL, flat=IRON, striker=ROD, approach=Approach(float(speed))
-        )
+        scene = on_iron(LAWS[name], approach=Approach(float(speed)))
         stepped = strike(scene, Settings(tolerance=1e-12))
         for key in NAMES:
             theirs = getattr(stepped, key)
@@ -77,10 +74,7 @@ def test_what_the_route_leaves_to_the_time_steps() -> None:
     # so slow that gravity does most of the work; deeper than half the radius
     assert np.isnan(found["restitution"]).tolist() == [True, False, True]
 
-    def scene(**seams):
-        given = {"approach": Approach(1.0), "striker": ROD, **seams}
-        return scene_of(LAWS["fitted"], sphere=STEEL, flat=IRON, **given)
-
+    scene = partial(on_iron, LAWS["fitted"])
     assert why_not(scene(friction=Friction(0.3))) == ""
     assert why_not(scene(approach=Approach(1.0, math.radians(45)))) == "a leaning rod"
     assert why_not(scene(approach=Approach(1.0, spin=3.0))) == "spin"

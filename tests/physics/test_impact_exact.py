@@ -12,9 +12,8 @@ from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
 from dentscope.models.kernel import E, R, S, kernel
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
+from made_scenes import STEEL, on_iron
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 TIGHT = Settings(tolerance=1e-11)
 
 
@@ -57,19 +56,13 @@ CONSTANT = ConstantPressure(
 def ball(law: ContactLaw, speed: float, *, radius: float = 0.01, **seams: object) -> object:
     mass = 4.0 / 3.0 * math.pi * radius**3 * 7800.0
     seams.setdefault("gravity", 0.0)
-    return scene_of(
-        law, sphere=STEEL, flat=IRON, striker=Striker(mass=mass, tip_radius=radius),
-        approach=Approach(speed), **seams,
-    )  # fmt: skip
+    striker = Striker(mass=mass, tip_radius=radius)
+    return on_iron(law, striker=striker, approach=Approach(speed), **seams)
 
 
 def rod(law: ContactLaw, angle_deg: float, *, mu: float, speed: float = 1.0, **seams: object):
-    return scene_of(
-        law, sphere=STEEL, flat=IRON,
-        striker=Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088),
-        approach=Approach(speed, math.radians(angle_deg)), friction=Friction(mu), gravity=0.0,
-        **seams,
-    )  # fmt: skip
+    approach = Approach(speed, math.radians(angle_deg))
+    return on_iron(law, approach=approach, friction=Friction(mu), gravity=0.0, **seams)
 
 
 def test_hertz_duration_and_peak() -> None:

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.core import Material
 from dentscope.dynamics import (
     Approach,
     Friction,
@@ -16,17 +15,14 @@ from dentscope.dynamics import (
     Spot,
     Striker,
     rod_modes,
-    scene_of,
     strike,
     traced,
 )
 from dentscope.dynamics import surface as su
 from dentscope.models import LAWS
 from dentscope.models.published.jackson_green import JACKSON_GREEN
+from made_scenes import ROD, STEEL, on_iron
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
-ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 TIGHT = Settings(tolerance=1e-9)
 
 
@@ -77,17 +73,13 @@ def test_more_imprints_than_are_kept_apart_never_raise_the_surface() -> None:
 
 
 def rod(angle: float, speed: float, mu: float, **seams: object) -> Scene:
-    return scene_of(
-        LAWS["fitted"], sphere=STEEL, flat=IRON, striker=ROD, friction=Friction(mu),
-        approach=Approach(speed, math.radians(angle)), **seams,
-    )  # fmt: skip
+    approach = Approach(speed, math.radians(angle))
+    return on_iron(LAWS["fitted"], approach=approach, friction=Friction(mu), **seams)
 
 
 def ball(law: object = JACKSON_GREEN) -> Scene:
-    return scene_of(
-        law, sphere=STEEL, flat=IRON, striker=Striker(mass=0.03, tip_radius=0.01),
-        approach=Approach(1.0), gravity=0.0, instrument=Instrument(scan_height=2e-8),
-    )  # fmt: skip
+    striker, instrument = Striker(mass=0.03, tip_radius=0.01), Instrument(scan_height=2e-8)
+    return on_iron(law, striker=striker, gravity=0.0, instrument=instrument)
 
 
 @pytest.mark.parametrize("law", [JACKSON_GREEN, LAWS["fitted"]], ids=lambda law: law.name)

@@ -19,9 +19,8 @@ from dentscope.dynamics import (
 from dentscope.dynamics.inverse import mobility
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
+from made_scenes import IRON, STEEL
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 ELASTIC = Material(E=200e9, nu=0.3, density=7800.0)
 MASS, RADIUS = 0.1, 0.2
 TIGHT = Settings(tolerance=1e-10)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.core import InputError, InputErrors, Material
+from dentscope.core import InputError, InputErrors
 from dentscope.core.inputs.templates import template
 from dentscope.core.observables import OBSERVABLES
 from dentscope.dynamics import (
@@ -17,17 +17,14 @@ from dentscope.dynamics import (
     Striker,
     impacts,
     rod_modes,
-    scene_of,
     strike,
 )
 from dentscope.dynamics.batch import QUICK
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.files.sweep import swept_scenes
 from dentscope.models import LAWS
+from made_scenes import ROD, STEEL, on_iron
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
-ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 BALL = Striker(mass=0.004, tip_radius=0.005)
 OWN = {"permanent_depth_m": "residual_flat_m"}
 SEEN = (
@@ -37,8 +34,7 @@ SEEN = (
 
 
 def scene(striker: Striker = ROD, law: str = "fitted", **seams):
-    given = {"approach": Approach(1.0), "friction": Friction(0.13), **seams}
-    return scene_of(LAWS[law], sphere=STEEL, flat=IRON, striker=striker, **given)
+    return on_iron(LAWS[law], striker=striker, **{"friction": Friction(0.13), **seams})
 
 
 def check(row, one, within: float = 3e-6) -> None:

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.dynamics import Approach, Settings, Striker, scene_of, strike
+from dentscope.dynamics import Approach, Settings, strike
 from dentscope.dynamics.force import factor
 from dentscope.dynamics.tabulated.cells import cell_at, cells_of, column_in
 from dentscope.dynamics.tabulated.law_table import ERROR, tabulated
@@ -15,10 +15,9 @@ from dentscope.models.base import DomainWarning, Kernels, PublishedLaw
 from dentscope.models.kernel import BRANCH_SIGNATURE
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
+from made_scenes import IRON, STEEL, on_iron
 from numba import njit
 
-STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
-IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 PAIR = Pair(STEEL, IRON, 0.0088)
 
 
@@ -72,16 +71,12 @@ def test_a_jump_of_a_published_law_stays_where_it_is() -> None:
 
 
 def test_an_impact_by_table_ends_as_by_the_law() -> None:
-    rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
     for angle in (90.0, 45.0):
+        leans = Approach(1.0, math.radians(angle))
         found = [
-            strike(
-                scene_of(law, sphere=STEEL, flat=IRON, striker=rod,
-                         approach=Approach(1.0, math.radians(angle))),
-                Settings(tolerance=1e-10),
-            )
+            strike(on_iron(law, approach=leans), Settings(tolerance=1e-10))
             for law in (JACKSON_GREEN, tabulated(JACKSON_GREEN))
-        ]  # fmt: skip
+        ]
         for name in ("restitution", "residual_flat_m", "contact_time_s", "peak_force_N"):
             assert getattr(found[1], name) == pytest.approx(getattr(found[0], name), rel=1e-7)
 
