@@ -113,13 +113,15 @@ class Trial:
       `NAME_std`.
     - `trace`, `profile`: columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
     - `label`: part of the trial's name that tells several trials of one file apart.
-    - `note`: what the person who measured wrote beside it; `place`: where it stands in the file.
+    - `spot`: the place on the flat, in words; `note`: what the person who measured wrote beside it;
+      `place`: where it stands in the file.
     """
 
     observables: Mapping[str, Measured]
     trace: Mapping[str, Array] = field(default_factory=dict)
     profile: Mapping[str, Array] = field(default_factory=dict)
     label: str = ""
+    spot: str = ""
     note: str = ""
     place: str = ""
 

@@ -232,7 +232,7 @@ def _with_trial(
     texts = {k: [*getattr(old, k), *([""] if new else [])] for k in _TEXTS}
     texts["trial"][place] = name
     texts["striker"][place] = row.striker or texts["striker"][place] or striker
-    texts["spot"][place] = row.spot or texts["spot"][place]
+    texts["spot"][place] = row.spot or trial.spot or texts["spot"][place]
     texts["note"][place] = trial.note or texts["note"][place]
     numbers = {k: grown(getattr(old, k)) for k in CONDITIONS if k not in _TEXTS}
     observables = {k: grown(v) for k, v in old.observables.items()}

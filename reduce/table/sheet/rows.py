@@ -148,6 +148,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Sheet:
     named = [
         replace(
             trial, label=rows[k - 1][naming.place] if naming else f"{k:03d}",
+            spot=next((rows[k - 1][c.place] for c in columns if c.kind.name == "spot"), ""),
             note=note_of(rows[k - 1], columns, naming), place=f"{sheet.source}: row {k}",
             observables={
                 n: (Measured(v.value, stds[n] * v.value / len(seen[n]) ** 0.5) if n in stds else v)

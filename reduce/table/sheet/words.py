@@ -174,6 +174,9 @@ KINDS = (
     SheetKind("ball", "text",
         (r"^(ball|striker|indenter|projectile|kugel|bille|bola|esfera|sfera|kul[ak]a?|钢球|鋼球|球)"
          r"( (type|material|no|nr|id))?\.?$",)),
+    SheetKind("spot", "text",
+        (r"^((impact )?spot|(mess|treff|aufschlag)stelle|point d impact|punto d[i e]* ?impacto?|"
+         r"ponto de impacto)( ?(no|nr|n))?\.?$",)),
     SheetKind("temperature_K", "temperature", (r"temperatur|\btemp\b|温度|室温",), r"^t$"),
     SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)",),
         never=f"{REBOUND}|{_SWING}|contact|kontakt|tilt|neigung"),

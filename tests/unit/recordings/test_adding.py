@@ -49,12 +49,14 @@ def test_rows_go_below_those_that_are_there(folder, prints):
 def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, errs, prints):
     setup = (folder / "set.toml").read_text().partition("[noise]")
     (folder / "set.toml").write_text(f"{setup[0]}[noise]\nrestitution = 0.01{setup[2]}")
-    sheet = rows(folder, "Versuch;Auftreffgeschwindigkeit [cm/s];e\nB1;120;0,71\nB2;140;0,69\n")
+    head = "Versuch;Auftreffgeschwindigkeit [cm/s];e;spot"
+    sheet = rows(folder, f"{head}\nB1;120;0,71;A\nB2;140;0,69;A\n")
     assert "'Versuch': names of the trials" in prints("recordings", "add", folder, "--from", sheet)
     now = read(folder).trials
     assert now.trial[-2:] == ("rows-B1", "rows-B2")
     assert now.impact_speed_m_s[-2:] == pytest.approx([1.2, 1.4])
     assert now.sessions[-2:].tolist() == [2.0, 2.0]
+    assert now.spot[-2:] == ("A", "A")  # the second blow meets the crater of the first
     before = (folder / "trials.csv").read_bytes()
     assert "'rows-B1' is in the set already" in errs("recordings", "add", folder, "--from", sheet)
     for words in (["--from", str(sheet), "--striker", "none"], [], ["a.csv", "--sheet", "b"]):
