@@ -46,6 +46,8 @@ class Material:
     """Yield strength [Pa]; infinite for an elastic or a rigid body."""
 
     def __post_init__(self) -> None:
+        if self.rigid not in (True, False):
+            raise InputError(repr(self.rigid), key="rigid", allowed="True or False")
         object.__setattr__(self, "strength", math.inf if self.rigid else self.Sy)
         if self.rigid:
             return

@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, cast, overload
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.arrays import numbers, one_number
@@ -93,8 +92,6 @@ class CheckedMaterial(Body, metaclass=_Checked):
         name: str = "",
     ) -> Self:  # fmt: skip
         """Return a `core.Material`."""
-        if not isinstance(rigid, bool | np.bool_):
-            raise InputError(repr(rigid), source="Material", key="rigid", allowed="True or False")
         flows = None if flow is None else _flow_of(flow)
         if flows is not None and flows.curve is not None and Sy == math.inf:
             Sy = flows.curve.strength

@@ -155,6 +155,7 @@ def test_magnitudes_that_no_body_has_are_asked_back():
         (lambda: steel.with_(Sy=300), "Material: Sy_Pa: 300 .*300 MPa would be 3e"),
         (lambda: steel.with_(density=7.8), r"density_kg_m3: 7.8 .*g/cm\^3 would be 7800"),
         (lambda: steel.with_(Sy="300 MPa"), "Sy_Pa: '300 MPa'"),
+        (lambda: steel.with_(rigid="yes"), "rigid: 'yes' .*True or False"),
         (lambda: steel.with_(flow="curve.csv"), "flow: 'curve.csv' .*core.flow.Flow"),
         (lambda: ds.Pair(steel, Body(200.0, 0.3), 0.01), "Pair: flat: E_Pa: 200.0 .*GPa"),
     ):
@@ -239,6 +240,7 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
         "seed: 1.9": lambda: ds.diagnose("leeb-steel-800hv", seed=1.9),
         "law: 3": lambda: ds.compare_laws(pair, law=["hertz", 3]),
         "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
+        "depth: 20 .*in m": lambda: fitted.loading(pair, [20e-6, 20.0]),
         "pair: Material": lambda: fitted.loading(steel, 1e-6),
         "pair: 3": lambda: fitted.residual(3, 1e-6),
         "depth: 3 depths of 2 pairs": lambda: fitted.loading([pair, pair], [1e-6, 2e-6, 3e-6]),
