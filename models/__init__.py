@@ -7,7 +7,7 @@ from difflib import get_close_matches
 
 from ..core.errors import InputError
 from ..core.inputs.added import LAWS as LAW_GROUP
-from ..core.inputs.added import added, names_added
+from ..core.inputs.added import names_added
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
@@ -59,18 +59,12 @@ def law_named(name: str) -> ContactLaw:
     if name.count("+") == 1:
         first, second = name.split("+")
         return law_named(first).with_unloading(law_named(second))
-    if name in LAWS:
+    if name in (known := (*LAWS, *names_added(LAW_GROUP))):
         return LAWS[name]
-    others = names_added(LAW_GROUP)
-    if name not in others:
-        known = f"{', '.join((*LAWS, *others))}, a law.json or a fitted.json"
-        near = get_close_matches(name, LAWS, n=1)
-        meant = f"; did you mean {near[0]!r}?" if near else ""
-        raise InputError(f"{name!r}{meant}", key="law", allowed=known)
-    law = added(LAW_GROUP, name)
-    if not isinstance(law, ContactLaw):
-        raise InputError(f"{name!r} of {LAW_GROUP} is no ContactLaw", key="law")
-    return law
+    near = get_close_matches(name, LAWS, n=1)
+    meant = f"; did you mean {near[0]!r}?" if near else ""
+    allowed = f"{', '.join(known)}, a law.json or a fitted.json"
+    raise InputError(f"{name!r}{meant}", key="law", allowed=allowed)
 
 
 __all__ = [

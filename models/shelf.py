@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 
+from ..core.errors import InputError
+from ..core.inputs.added import LAWS as GROUP
+from ..core.inputs.added import added, names_added
 from ..core.tables import html_table, text_table
 from .base import ContactLaw
 
@@ -18,9 +21,14 @@ class UnknownLaw(KeyError):
 
 
 class Shelf(dict[str, ContactLaw]):
-    """Contact laws by name, in reading order."""
+    """Contact laws by name, in reading order; those of other packages when they are asked for."""
 
     def __missing__(self, name: str) -> ContactLaw:
+        if name in names_added(GROUP):
+            law = added(GROUP, name)
+            if not isinstance(law, ContactLaw):
+                raise InputError(f"{name!r} of {GROUP} is no ContactLaw", key="law")
+            return law
         near = get_close_matches(str(name), self, n=1)
         meant = f"did you mean {near[0]!r}? " if near else ""
         raise UnknownLaw(f"no law {name!r}; {meant}known are {', '.join(self)}")

@@ -54,7 +54,7 @@ def importable(monkeypatch):
 def test_a_law_of_another_package_is_found_by_its_name(packages, importable, prints):
     packages(laws=("toy", f"{HERE}:TOY_LAW"))
     assert "Of other packages: toy." in prints("laws", "list")
-    assert law_named("toy").name == "johnson"
+    assert law_named("toy") is LAWS["toy"] is TOY_LAW
     with pytest.raises(InputError, match=r"'other'.*toy"):
         law_named("other")
 
