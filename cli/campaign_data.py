@@ -11,7 +11,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_file
-from ..core.tables import parquet
+from ..core.tables import counted, parquet
 from .shared.places import file_option, folder_option, misused
 from .shared.terminal import new_console, show_table
 
@@ -159,10 +159,12 @@ def repair(out: Out = Path("build/campaign")) -> int:
     """Set damaged cases of a run aside; the next run computes them again."""
     from ..campaigns import Store
 
+    if not out.is_dir():
+        raise misused(str(out), key="--out", allowed="the folder of a run")
     kept, lost = Store(out).repair()
     for line in lost:
         typer.echo(f"set aside: {line}")
-    typer.echo(f"{kept} cases are whole in {out}")
+    typer.echo(f"{counted(kept, 'case')} whole in {out}")
     return EXIT_NOT_CONVERGED if lost else 0
 
 

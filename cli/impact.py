@@ -11,6 +11,7 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.inputs.templates import template, write_new
 from ..core.output import write_csv, write_figure
+from ..core.tables import counted
 from .laws import laws_named
 from .shared.places import folder_option, misused, refuse_beside
 from .shared.terminal import new_console, say, show_table, tell_first_use
@@ -93,7 +94,9 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
             say(told)
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
     if unfinished:
-        console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
+        console.print(
+            f"{counted(unfinished, 'impact')} of the sweep did not end: see the column outcome"
+        )
     leave_if_unfinished(found)
     if unfinished:
         raise typer.Exit(EXIT_NOT_CONVERGED)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..core.tables import counted
 from .shared.groups import group
 from .shared.places import folder_option, misused, one_of
 from .shared.terminal import new_console, say, show_table
@@ -44,7 +45,7 @@ def check(folder: SetFolder) -> None:
 
     found = read(set_folder(folder))
     strikers = ", ".join(found.setup.strikers)
-    typer.echo(f"{folder}: sound; {_trials(len(found.trials))} of {strikers}")
+    typer.echo(f"{folder}: sound; {counted(len(found.trials), 'trial')} of {strikers}")
     for name in ("description", "source", "licence"):
         if text := getattr(found.setup, name):
             say(f"  {name}: {text}")
@@ -135,7 +136,7 @@ def _new_from(
             done = store(found.reduced(sheet), folder, row, kind="sheet", options=options,
                          strikers=tuple(filter(None, balls)))  # fmt: skip
             still = list(done.notes)
-        typer.echo(f"{sheet}: {_trials(len(found.trials))} of {ball or f'a {shape}'}")
+        typer.echo(f"{sheet}: {counted(len(found.trials), 'trial')} of {ball or f'a {shape}'}")
         _tell_columns(found)
         if dry_run:
             show_table(new_console(), *found.shown(first or trial_name(sheet)))
@@ -172,7 +173,8 @@ def add(
             raise misused(told, key="--from", allowed="--from SHEET beside them")
         assert rows is not None
         now, new = add_trials(folder, rows, source=f"{sheet}, as read" if sheet else "")
-    typer.echo(f"{folder}: {_trials(len(new))} added, {_trials(len(now.trials))} in all")
+    in_all = counted(len(now.trials), "trial")
+    typer.echo(f"{folder}: {counted(len(new), 'trial')} added, {in_all} in all")
     typer.echo(f"then: dentscope diagnose {quote(str(folder))}")
 
 
@@ -223,11 +225,9 @@ def list_sets(
         except InputError as error:
             typer.echo(f"{path.name}: {str(error).splitlines()[0]}")
             continue
-        typer.echo(f"{path.name}: {_trials(len(found.trials))}; {', '.join(found.observed)}")
-
-
-def _trials(count: int) -> str:
-    return f"{count} trial{'s' * (count != 1)}"
+        typer.echo(
+            f"{path.name}: {counted(len(found.trials), 'trial')}; {', '.join(found.observed)}"
+        )
 
 
 @app.command()

@@ -11,6 +11,17 @@ from typing import Any
 from .errors import missing_extra
 
 
+def counted(number: int, noun: str) -> str:
+    """Return a number of things.
+
+    Examples
+    --------
+    >>> counted(1, "trial"), counted(2, "trial")
+    ('1 trial', '2 trials')
+    """
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 def frame(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> Any:
     """Return rows, or columns by name, as a pandas data frame; refused without pandas."""
     if find_spec("pandas") is None:

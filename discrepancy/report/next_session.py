@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 
 from ...core.observables import OBSERVABLES
+from ...core.tables import counted
 from ..choice.odds import OUTSIDE
 from ..experiments.session import Proposal, Session, Telling
 from ..findings import Verdict
 from ..rules import RULES
-from .wording import counted, explanation, joined, number_name, percent, quantity
+from .wording import explanation, joined, number_name, percent, quantity
 
 # limit: deviation of a logarithm beyond which both ends are told [-]: ± would reach below zero
 _WIDE = 0.3

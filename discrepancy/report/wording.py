@@ -155,17 +155,6 @@ def joined(parts: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
 
 
-def counted(number: int, noun: str) -> str:
-    """Return a number of things.
-
-    Examples
-    --------
-    >>> counted(1, "trial"), counted(2, "trial")
-    ('1 trial', '2 trials')
-    """
-    return f"{number} {noun}{'s' * (number != 1)}"
-
-
 def miss_sentences(located: Located, *, most: int) -> tuple[str, ...]:
     """Return where the simulation misses beyond chance, a sentence an observable, worst first."""
     found, threshold = [], located.threshold

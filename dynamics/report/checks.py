@@ -19,6 +19,7 @@ from ...core.inputs.flow_curve import SPECIMENS
 from ...core.inputs.materials import materials, unlisted
 from ...core.inputs.rig_numbers import solid_mass
 from ...core.rig import Quantity
+from ...core.tables import counted
 from ...models.base import ContactLaw, DomainWarning, unwarned
 from ...models.choose import demand, follows_flow
 from ...models.turned import as_made
@@ -401,8 +402,8 @@ def swept_walls(scene: Scene, swept: Impacts) -> Iterator[str]:
     again = swept["contacts"] > 1
     if again.any() and climbs(scene):
         yield (
-            f"the rebound of {again.sum()} impacts of the sweep comes from the wall of their own "
-            f"crater ({', '.join(dict.fromkeys(swept['law'][again]))}): see the column contacts"
+            f"the rebound of {counted(again.sum(), 'impact')} of the sweep comes from the crater's "
+            f"own wall ({', '.join(dict.fromkeys(swept['law'][again]))}): see the column contacts"
         )
 
 
@@ -445,7 +446,7 @@ def swept_above_one(swept: Impacts) -> Iterator[str]:
     for text, rows in ways.items():
         if rows.any():
             yield text.format(
-                f"{rows.sum()} impacts of the sweep have a restitution above 1, up to "
+                f"a restitution above 1 of {counted(rows.sum(), 'impact')} of the sweep, up to "
                 f"{swept['restitution'][rows].max():.4g}"
             )
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ....core.inputs.names import names_a_file
+from ....core.tables import counted
 from ....recordings.columns import CONDITIONS
 from ....recordings.rules import RULES as OWN
 from ...bounces.options import GRAVITY
@@ -107,7 +108,8 @@ def naming_of(
 def note_of(row: Sequence[str], columns: Sequence[SheetColumn], naming: SheetColumn | None) -> str:
     """Return what stands beside a trial's numbers: remarks, who measured, other names of it."""
     texts = [(c, row[c.place]) for c in columns
-             if c.kind.quantity == "text" and c is not naming and row[c.place]]  # fmt: skip
+             if c.kind.quantity == "text" and c.kind.name != "spot" and c is not naming
+             and row[c.place]]  # fmt: skip
     return "; ".join(t if c.kind.name == "note" else f"{c.header} {t}" for c, t in texts)
 
 
@@ -137,4 +139,4 @@ def became(
     if alike > 1 and column.kind.quantity != "text" and not column.spread:
         told += f", one of {alike} readings of a trial"
     of = "standard deviation of " if column.spread else ""
-    return f"{of}{told} ({column.taken} cells)"
+    return f"{of}{told} ({counted(column.taken, 'cell')})"

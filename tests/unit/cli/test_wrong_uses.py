@@ -149,6 +149,7 @@ campaign export --to folder
 campaign publish --design huge
 campaign publish --design smoke --out folder
 campaign refine zz
+campaign repair --out absent
 fit absent.h5
 fit words.h5
 fit folder

@@ -376,7 +376,7 @@ def test_a_law_that_makes_energy_is_told_from_motion_that_feeds_the_rebound():
     swept = fast.swept(LAWS["ghaednia"])
     assert swept["kinetic_after_J"][1] > 2.0 * swept["kinetic_before_J"][1]
     (line,) = swept_above_one(swept.joined(fast.swept(LAWS["hertz"])))
-    assert line.startswith("ghaednia: 1 impacts")
+    assert line.startswith("ghaednia: a restitution above 1 of 1 impact of the sweep")
     assert "gives back more than it took" in line
     assert list(swept_above_one(slow.swept(LAWS["fitted"]))) == []
 
@@ -523,4 +523,4 @@ def test_a_rebound_off_the_walls_of_its_own_crater_is_told():
     swept = replace(oblique, sweep=SweepTable(angle_deg=(10.0, 80.0))).swept(law)
     assert swept["contacts"].tolist() == [2, 1]
     (line,) = swept_walls(oblique.scene(law), swept)
-    assert line.startswith("the rebound of 1 impacts of the sweep comes from the wall")
+    assert line.startswith("the rebound of 1 impact of the sweep comes from the crater's own wall")

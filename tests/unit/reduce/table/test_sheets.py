@@ -224,7 +224,7 @@ def test_what_was_measured_comes_before_a_restitution_that_differs(tmp_path, tex
 def test_a_rebound_that_gives_no_restitution_is_told(tmp_path):
     text = "drop height (cm),v [m/s],rebound height (cm),rebound speed (m/s)\n100,4,64,3.5\n"
     became = columns(read_text(tmp_path, text))
-    assert became["rebound speed (m/s)"] == "restitution, where heights give none (1 cells)"
+    assert became["rebound speed (m/s)"] == "restitution, where heights give none (1 cell)"
     assert became["rebound height (cm)"].startswith("restitution, the root of rebound")
 
 
