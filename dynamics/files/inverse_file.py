@@ -118,7 +118,7 @@ def read_inverse(path: Path) -> list[InverseRow]:
             inferred = infer(rod, measured)
         except InputError as error:
             key = {"friction": "friction_impulse_ratio"}.get(error.key, error.key)
-            raise error.at(source, f"trial.{i - 1}.{key}") from None
+            raise error.at(source, f"trial {trial.trial or i}: {key}") from None
         std = _deviations(found.striker, measured)
         rows.append(InverseRow(trial.trial or str(i), measured, inferred, std))
     return rows

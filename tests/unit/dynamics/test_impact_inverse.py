@@ -44,4 +44,4 @@ def test_file_and_command(tmp_path: Path, errs) -> None:
     assert (tmp_path / "trials-inverse.csv").exists()
     file.write_text(INVERSE.replace("0.13", "0.9"))
     told = errs("inverse", file, "--out", tmp_path)
-    assert "trial.0.friction_impulse_ratio: 0.9 makes the tip stick" in told
+    assert "trial T01: friction_impulse_ratio: 0.9 makes the tip stick" in told
