@@ -11,6 +11,7 @@ import numpy as np
 from .. import __version__
 from ..core.arrays import Array
 from ..core.errors import InputError
+from ..core.rig import TABOR
 from ..core.tables import text_table
 from .choice.decide import Choice
 from .comparison.problem import Problem
@@ -42,6 +43,7 @@ class WrongInput(NamedTuple):
     - `stated`: as it stands [`number.unit`]; none where it is not one number.
     - `off`, `low`, `high`: factor on it, or what is added to all heights [m], with the 90 %
       interval.
+    - `hardness`: of a strength, the hardness that stands beside it [Pa].
     """
 
     number: WrongNumber
@@ -50,6 +52,18 @@ class WrongInput(NamedTuple):
     off: float
     low: float
     high: float
+    hardness: float | None = None
+
+    @property
+    def settled_by(self) -> str:
+        """What would settle it: the hardness, where it was tested."""
+        if self.hardness is None:
+            return self.number.settled_by
+        strength = self.hardness / TABOR / 1e6
+        return (
+            f"the stated hardness, if it is right: over {TABOR:g}, as of most metals, it is a "
+            f"strength of {strength:.3g} MPa"
+        )
 
     @property
     def would_be(self) -> tuple[float, float, float] | None:
@@ -66,7 +80,7 @@ class WrongInput(NamedTuple):
         return {
             "key": n.key, "probability": self.probability, "stated": self.stated,
             "value": value, "low": low, "high": high, "level": 0.9, "unit": n.unit,
-            n.measure: self.off, "settled_by": n.settled_by,
+            n.measure: self.off, "settled_by": self.settled_by,
         }  # fmt: skip
 
 
@@ -144,7 +158,9 @@ class Verdict:
     def _wrong(self, m: WrongNumber) -> WrongInput:
         found = self.parameters[m.parameters[0].name]
         off = (float(found[k]) for k in ("value", "low", "high"))
-        return WrongInput(m, self.inclusion.get(m.name, 0.0), self.problem.rig.of.get(m.key), *off)
+        of, name = self.problem.rig.of, m.key.replace(".Sy_Pa", ".hardness_Pa")
+        tested = of.get(name) if m.kind == "strength" else None
+        return WrongInput(m, self.inclusion.get(m.name, 0.0), of.get(m.key), *off, hardness=tested)
 
     @property
     def alternatives(self) -> tuple[tuple[str, ...], ...]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ...core.observables import OBSERVABLES
+from ...core.tables import counted
 from ..choice.decide import WRONG_INPUT
 from ..choice.odds import OUTSIDE
 from ..findings import Verdict, WrongInput
@@ -14,7 +15,6 @@ from ..rules import RULES
 from .next_session import change_lines, next_lines
 from .wording import (
     compared,
-    counted,
     explanation,
     interval,
     joined,
@@ -117,7 +117,7 @@ def _wrong(w: WrongInput) -> str:
         unit = n.parameters[0].unit
         found += f" {n.told.format(f'{quantity(w.off, unit)} ({interval(w.low, w.high, unit)})')}"
     slip = n.slip(w.low, w.high)
-    return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
+    return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {w.settled_by}."
 
 
 def _beside(v: Verdict) -> str:
@@ -229,7 +229,7 @@ def lines(v: Verdict) -> list[str]:
         out += ["", "Next experiment", *(f"  {line}" for line in step)]
     if v.limits and v.verdict == "adequate":
         out += ["", "What would have been seen"]
-        out += [f"  {k}: {x:.3g} or more" for k, x in v.limits.items()]
+        out += [f"  {what}: {number} from {size} on" for what, number, size in limit_rows(v)]
     out += ["", "How it was decided", *(f"  {r}" for r in v.reasons)]
     notes = [n for n in v.notes if n]
     if notes:
@@ -257,6 +257,15 @@ def predicted(v: Verdict) -> str:
         f"on conditions left out of the fit the miss goes from {i['held_out_baseline']:.1f} to "
         f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: {compared(i)}"
     )
+
+
+def limit_rows(v: Verdict) -> tuple[tuple[str, str, str], ...]:
+    """Return what would have been seen, by which number, and from which value of it on."""
+    of = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
+    return tuple(
+        (title_of(k, v.titles), of[k].name, quantity(x, of[k].unit))
+        for k, x in v.limits.items() if k in of
+    )  # fmt: skip
 
 
 def own_parameters(v: Verdict) -> list[tuple[str, str, str]]:

@@ -13,7 +13,16 @@ from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
 from .next_session import change_lines, next_lines
-from .sentences import STORY_LEAST, headline, held, nowhere, own_parameters, predicted, why
+from .sentences import (
+    STORY_LEAST,
+    headline,
+    held,
+    limit_rows,
+    nowhere,
+    own_parameters,
+    predicted,
+    why,
+)
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
 from .wording import explanation, interval, miss_sentences, number_name, percent, quantity, title_of
 
@@ -136,7 +145,7 @@ def story_of(v: Verdict) -> Story:
         excluded=ToldCells(
             ("what", "why not"), tuple((title_of(k, v.titles), x) for k, x in v.excluded.items())
         ),
-        limits=_limits(v),
+        limits=ToldCells(("what", "number", "would have been seen from"), limit_rows(v)),
         next_step=step,
         further=tuple(filter(None, further)),
         changed=tuple(change_lines(v)),
@@ -232,13 +241,3 @@ def _scores(v: Verdict) -> ToldCells:
         "probability",
     )  # fmt: skip
     return ToldCells(head, rows)
-
-
-def _limits(v: Verdict) -> ToldCells:
-    units = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
-    rows = tuple(
-        (title_of(k, v.titles), units[k].name, quantity(x, units[k].unit))
-        for k, x in v.limits.items()
-        if k in units
-    )
-    return ToldCells(("what", "number", "would have been seen from"), rows)

@@ -9,6 +9,7 @@ from dentscope.discrepancy.choice.odds import PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.linear import Linear
+from dentscope.discrepancy.report.sentences import limit_rows
 from dentscope.discrepancy.rules import RULES
 from dentscope.dynamics.mechanisms.base import Parameter
 
@@ -44,3 +45,10 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
     step = (high / low) ** (1.0 / n) - 1.0 if scale == "log" else (high - low) / n / value
     assert abs(found["m"]) == pytest.approx(value, rel=step)
     assert np.abs(effect(found["m"])) > NEEDED
+
+
+def test_a_limit_is_told_with_its_unit():
+    mechanism = SimpleNamespace(name="m", parameters=(Parameter("p_m", "m", 0, 1, "log", 0, ""),))
+    ranking = SimpleNamespace(screened=[SimpleNamespace(mechanism=mechanism)])
+    told = SimpleNamespace(limits={"m": 1.5e-7}, titles={"m": "it yields"}, ranking=ranking)
+    assert limit_rows(told) == (("it yields", "p_m", "150 nm"),)

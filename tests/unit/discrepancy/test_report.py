@@ -201,6 +201,8 @@ def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> No
     told = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6).told
     assert (told["value"], told["low"], told["high"]) == (3e8, 2.8e8, 3.2e8)
     assert "press" not in told["settled_by"]  # of which the set may hold some
+    tested = WrongInput(WrongNumber("target.Sy_Pa", "strength", ""), 0.9, 2e8, 1.5, 1.4, 1.6, 1.4e9)
+    assert tested.told["settled_by"].endswith("a strength of 500 MPa")
 
 
 def test_what_is_drawn_and_doubted_is_all_that_the_comparison_counts(toy: Any) -> None:
