@@ -73,7 +73,9 @@ def _meaning(v: Verdict, one: Telling) -> str:
     """What the most telling reading is under each explanation."""
     row = OBSERVABLES.get(one.read)
     logarithm = row is None or row.log
-    stated = v.problem.rig.of.get(one.read, 1.0)
+    # a strength that is not stated is infinite in the rig, and assumed among the nuisances
+    assumed = {n.name: n.value for n in v.problem.nuisances}
+    stated = assumed.get(one.read, v.problem.rig.of.get(one.read, 1.0))
     unit = one.read.rpartition("_")[2] if row is None else _si(one.read)
     cases = []
     for name, (mean, std) in one.expected.items():

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.families import Family
+from dentscope.discrepancy.experiments.session import Telling
 from dentscope.discrepancy.findings import WrongInput
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
+from dentscope.discrepancy.report.next_session import _meaning
 from dentscope.discrepancy.report.sentences import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.series import (
     STATED,
@@ -192,6 +194,15 @@ def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     v.probabilities = {"baseline": 0.998, "work-hardening": 0.002}
     told = why(v)
     assert "Most probable: nothing is missing (more than 99 %). Nothing else has a share." in told
+
+
+def test_a_strength_that_is_not_stated_is_told_as_assumed() -> None:
+    """In the rig it is infinite: a test of it would have shown no number."""
+    assumed = Nuisance("target.Sy_Pa", "Pa", 3.5e8, 0.7)
+    rig = SimpleNamespace(of={"target.Sy_Pa": math.inf})
+    v: Any = SimpleNamespace(problem=SimpleNamespace(rig=rig, nuisances=(assumed,)), titles={})
+    told = _meaning(v, Telling(0, "target.Sy_Pa", {"baseline": (0.0, 0.1)}))
+    assert "350 MPa ± 35 MPa if nothing is missing" in told
 
 
 def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> None:
