@@ -215,6 +215,8 @@ def material_keys(body: Material) -> dict[str, float | bool]:
 
 TABOR = 2.8
 """Indentation hardness over yield strength [-] (Tabor, The Hardness of Metals, 1951)."""
+TABOR_STRAIN = 0.08
+"""Plastic strain at which a hardness over `TABOR` is the flow stress [-] (the same; Vickers)."""
 
 
 def by_tabor(hardness: Quantity) -> Quantity:

@@ -20,6 +20,7 @@ from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS, Rise
 from ...core.processes.threads import in_one_thread
+from ...core.rig import TABOR_STRAIN
 from ...dynamics import dent_radius
 from ...dynamics.mechanisms.base import Constants, Mechanism, attached
 from ...dynamics.mechanisms.strength.strain_rate_hardening import (
@@ -56,8 +57,8 @@ class Metal:
     - `name`, `body`: of the set; key of the body's table.
     - `strength`: as stated [Pa]: the curve's unit.
     - `mean`, `covariance`: (n,) and (n, n) posterior of what the fit moves: logarithm of stress
-      over `strength` at 0.2 %, exponents at the nodes, the rate law where impacts left marks (of
-      the rise ln(1 + rise)), then the nuisances.
+      over `strength` at 0.2 % (of a hardness: 8 %), exponents at the nodes, the rate law where
+      impacts left marks (of the rise ln(1 + rise)), then the nuisances.
     - `map`: (nodes, n) from these to the logarithms at the nodes.
     - `rated`: whether impacts left marks.
     - `pressed`, `struck`: how many numbers came from presses and from impacts.
@@ -131,19 +132,20 @@ def metal_of(recordings: RecordingSet) -> Metal:
     problem = _of_marks(problem_of(replace(recordings, flows={})))
     known = len(problem.cells)
     wider = with_marks(problem, RULES.bench)
-    fit = _Fit.of(wider, known)
-    mean, covariance, J = fit.posterior()
     body, stated = _dented(problem)
+    table = recordings.setup.bodies[body]
+    tested = table.Sy_Pa is None and table.hardness_Pa is not None
+    fit = _Fit.of(wider, known, at=TABOR_STRAIN if tested else STRAINS[0])
+    mean, covariance, J = fit.posterior()
     strain, back = _marks(wider, fit, mean, J)
     pressed = np.array([problem.conditions[k].press is not None for k in problem.cells.condition])
     best = next_mark(wider, known, weights(TOLD) @ fit.map, covariance, J)
-    table = recordings.setup.bodies[body]
-    source = "stated" if table.Sy_Pa is not None else "taken from the hardness, or assumed"
+    source = "assumed" if table.strength is None else "of the hardness" if tested else "stated"
     return Metal(
         recordings.name, body, stated, mean, covariance, fit.map, fit.rated, int(pressed.sum()),
         int((~pressed).sum()), strain, stated * np.exp(back[0]), back[1], pressed, best,
-        (f"{body}.Sy_Pa, {source}, counts as the stress at 0.2 % within "
-         f"{100.0 * fit.first:.0f} %",),
+        (f"{body}.Sy_Pa, {source}, counts as the stress at "
+         f"{100.0 * fit.at:g} % within {100.0 * fit.first:.0f} %",),
     )  # fmt: skip
 
 
@@ -200,9 +202,11 @@ class _Fit:
     map: Array
     rated: bool
     first: float
+    at: float
+    """Strain at which the stress is the strength, within `first`."""
 
     @classmethod
-    def of(cls, problem: Problem, known: int) -> _Fit:
+    def of(cls, problem: Problem, known: int, *, at: float = STRAINS[0]) -> _Fit:
         nodes = np.log(STRAINS)
         n = len(nodes)
         body = f"{_dented(problem)[0]}.Sy_Pa"
@@ -228,8 +232,9 @@ class _Fit:
             integral[k] = integral[k - 1]
             integral[k, k - 1] += step[k - 1]
             integral[k, k] += step[k - 1]
+        integral -= weights([at]) @ integral
         mapped = np.hstack([np.ones((n, 1)), integral, np.zeros((n, len(prior) - 1 - n))])
-        return cls(problem, known, prior, spread, mapped, rated, first)
+        return cls(problem, known, prior, spread, mapped, rated, first, at)
 
     @property
     def mechanisms(self) -> tuple[Mechanism, ...]:
