@@ -25,7 +25,7 @@ from pydantic import (
 from .errors import InputError
 from .inputs.materials import Mistyped, filled, unlisted
 from .inputs.names import FileName
-from .inputs.ranges import DENSITIES, MODULI, RADII, SPEEDS, STRENGTHS, Within, span
+from .inputs.ranges import DENSITIES, HARDNESSES, MODULI, RADII, SPEEDS, STRENGTHS, Within, span
 from .inputs.rig_numbers import RigNumbers, solid_inertia, solid_mass
 from .inputs.toml_input import InputTable
 from .material import Material
@@ -231,7 +231,7 @@ def by_tabor(hardness: Quantity) -> Quantity:
 class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
 
-    hardness_Pa: Strength | None = None
+    hardness_Pa: Annotated[Quantity, AfterValidator(HARDNESSES)] | None = None
     """Indentation hardness; gives the yield strength where that is left out."""
     Ra_m: Roughness | None = None
     """Mean roughness of the surface."""

@@ -439,6 +439,10 @@ def _notes(found: RecordingSet) -> list[str]:
         used |= column == LOAD and bool(found.trials.pressed.any())
         if not used and key not in RIG_NOISE:
             notes.append(f"noise.{key} is not used: the set has no values of {column}")
+        elif column in found.observed and np.nanmin(found.values(column)) > 0.0:
+            noise, most = found.setup.noise[key], np.nanmax(found.values(column))
+            if noise > (most if key == column else 1.0):
+                notes.append(f"noise.{key} {noise:g} is above every reading: in another unit?")
     columns = found.trials.observables.values()
     empty = (
         np.all([np.isnan(c) for c in columns], axis=0) if columns else np.ones(len(found.trials))

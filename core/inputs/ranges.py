@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 # either way is not known: leave it out
 LEAST_KNOWN = 100.0
 
+# limit: smallest standard deviation over a value [-]; 0.05 of a modulus in Pa is a fraction
+BEST_KNOWN = 1e-7
+
 
 @dataclass(frozen=True)
 class Within:
@@ -33,6 +36,8 @@ class Within:
             raise ValueError(wanted)
         if quantity.relative > LEAST_KNOWN:
             raise ValueError(f"a std of at most {LEAST_KNOWN:g} times the value")
+        if 0.0 < quantity.relative < BEST_KNOWN:
+            raise ValueError(f"0, or a std from {BEST_KNOWN:g} times the value on, in its unit")
         return quantity
 
     def wanted(self, value: float) -> str:
@@ -51,6 +56,7 @@ def span(low: float, high: float, **units: float) -> Within:
 
 STRENGTHS = span(1e3, 5e11, MPa=1e6, GPa=1e9)
 """Of any stress at which a metal flows [Pa]."""
+HARDNESSES = span(1e3, 5e11, **{"HBW or HV": 9.80665e6, "GPa": 1e9})
 STRAINS = span(0.0, 3.0, **{"%": 1e-2})
 """Of measured plastic strains: torsion reaches the largest."""
 SPEEDS = span(1e-9, 2e4, **{"mm/s": 1e-3})

@@ -69,6 +69,12 @@ CASES = {
     "no set.toml": ({"toml": None}, r"set\.toml: no such file"),
     "not TOML": ({"toml": "format = \n"}, r"set\.toml: not valid TOML"),
     "decimal comma": (toml("mass_kg = 0.5", "mass_kg = 0,5"), r"not valid TOML .*a point in a num"),
+    "a fraction for a std": (
+        toml("std = 4.0e9", "std = 0.02"), r"target.E_Pa: .*0, or a std from 1e-07 times",
+    ),
+    "Brinell's number": (
+        toml("nu = 0.3", "nu = 0.3\nhardness_Pa = 120"), r"120 HBW or HV would be 1.17\d+e\+09",
+    ),
     "empty TOML": ({"toml": ""}, r"set\.toml: format: missing"),
     "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
     "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
@@ -200,11 +206,13 @@ def test_rows_are_not_blamed_for_what_set_toml_lacks(wrong, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "note"),
     [(",90,", ",1.5708,", "no angle_deg is above 1.5708: are they in radians?"),
-     ("restitution_std", "temperature_K", "temperature_K 0.01: is it in degrees Celsius?")],
+     ("restitution_std", "temperature_K", "temperature_K 0.01: is it in degrees Celsius?"),
+     ("restitution = 0.01", "restitution = 1",
+      "noise.restitution 1 is above every reading: in another unit?")],
 )  # fmt: skip
 def test_a_slip_of_the_unit_that_may_be_true_is_a_note(old, new, note, tmp_path):
     rows = TRIALS.replace("rod,45,", "rod,90,").replace(old, new)
-    assert note in read(write(tmp_path, trials=rows)).notes
+    assert note in read(write(tmp_path, toml=SET.replace(old, new), trials=rows)).notes
 
 
 def test_trace_of_no_trial_and_missing_folder(tmp_path):
