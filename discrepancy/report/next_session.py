@@ -34,8 +34,11 @@ def next_lines(v: Verdict) -> list[str]:
         head = f"In one session ({_time(s.minutes)} of {_time(s.length)}), which is expected to "
         return [f"{head}{told}:", *steps, *meaning]
     leads = max(v.probabilities, key=lambda name: v.probabilities[name])
-    why = f"a session of {_time(s.length)} would {told}" if s.steps else "it offers none"
-    head = f"Stop: no trial with this rig tells apart what is left: {why}."
+    head = "Stop: this rig offers no trial."
+    if s.steps:
+        head = (
+            f"Stop: a session of {_time(s.length)} would {told}, which is but {s.entropy:.2g} nat."
+        )
     if s.entropy < RULES.worth:
         head = f"Stop: nothing is left to tell apart ({s.entropy:.2g} nat)."
     if leads == OUTSIDE:
@@ -101,16 +104,19 @@ def change_lines(v: Verdict) -> list[str]:
     if len(v.history) < 2:
         return []
     before, after = v.history[-2:]
-    names = {**before.probabilities, **after.probabilities}
-    moved = {k: after.probabilities.get(k, 0.0) - before.probabilities.get(k, 0.0) for k in names}
-    most = sorted(names, key=lambda k: -abs(moved[k]))[:_CHANGED]
+    # that it takes part, as the finding says it
+    was, now = (
+        {k: sum(p for label, p in some.items() if k in label.split("+"))
+         for k in dict.fromkeys("+".join(after.probabilities | before.probabilities).split("+"))}
+        for some in (before.probabilities, after.probabilities)
+    )  # fmt: skip
+    most = sorted(now, key=lambda k: -abs(now[k] - was[k]))[:_CHANGED]
     told = [
-        f"{explanation(k, v.titles)} {percent(before.probabilities.get(k, 0.0))}, now "
-        f"{percent(after.probabilities.get(k, 0.0))}"
+        f"{explanation(k, v.titles)} {percent(was[k])}, now {percent(now[k])}"
         for k in most
-        if abs(moved[k]) >= 0.01
+        if abs(now[k] - was[k]) >= 0.01
     ]
     new = counted(after.trials - before.trials, "trial")
     if not told:
         return [f"Session {after.batch:g} ({new}) changed no probability by a per cent."]
-    return [f"What session {after.batch:g} ({new}) changed: {joined(told)}."]
+    return [f"What session {after.batch:g} ({new}) changed in what takes part: {joined(told)}."]

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.choice.families import Family
 from dentscope.discrepancy.experiments.session import Telling
-from dentscope.discrepancy.findings import WrongInput
+from dentscope.discrepancy.findings import After, WrongInput
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
-from dentscope.discrepancy.report.next_session import _meaning
+from dentscope.discrepancy.report.next_session import _meaning, change_lines
 from dentscope.discrepancy.report.sentences import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.series import (
     STATED,
@@ -203,6 +203,21 @@ def test_a_strength_that_is_not_stated_is_told_as_assumed() -> None:
     v: Any = SimpleNamespace(problem=SimpleNamespace(rig=rig, nuisances=(assumed,)), titles={})
     told = _meaning(v, Telling(0, "target.Sy_Pa", {"baseline": (0.0, 0.1)}))
     assert "350 MPa ± 35 MPa if nothing is missing" in told
+
+
+def test_a_session_changed_what_takes_part_as_the_finding_says_it() -> None:
+    """Alone 60 and 70 %, in a pair 30 and 25 %."""
+    history = [
+        After(
+            k, 20 * k, {"work-hardening": p, "roughness+work-hardening": q, "baseline": 1 - p - q}
+        )
+        for k, p, q in ((1, 0.6, 0.3), (2, 0.7, 0.25))
+    ]
+    v: Any = SimpleNamespace(history=history, titles={})
+    [told] = change_lines(v)
+    assert "(20 trials) changed in what takes part: work hardening 90 %, now 95 %," in told
+    assert "roughness 30 %, now 25 %" in told
+    assert "nothing is missing 10 %, now 5 %" in told
 
 
 def test_a_wrong_number_without_one_value_has_the_interval_of_its_factor() -> None:
