@@ -157,10 +157,11 @@ class Verdict:
 
     def _wrong(self, m: WrongNumber) -> WrongInput:
         found = self.parameters[m.parameters[0].name]
-        off = (float(found[k]) for k in ("value", "low", "high"))
+        off, low, high = (float(found[k]) for k in ("value", "low", "high"))
         of, name = self.problem.rig.of, m.key.replace(".Sy_Pa", ".hardness_Pa")
         tested = of.get(name) if m.kind == "strength" else None
-        return WrongInput(m, self.inclusion.get(m.name, 0.0), of.get(m.key), *off, hardness=tested)
+        part = self.inclusion.get(m.name, 0.0)
+        return WrongInput(m, part, of.get(m.key), off, low, high, tested)
 
     @property
     def alternatives(self) -> tuple[tuple[str, ...], ...]:
