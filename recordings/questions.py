@@ -1,14 +1,24 @@
-"""What a sound set may hold by mistake: told by `recordings check`, and nothing hangs on it."""
+"""What a sound set may hold by mistake: told by `recordings check`, the notes in a verdict too."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..core.inputs.materials import unlisted
-from .recording_set import RecordingSet
+from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
+
+if TYPE_CHECKING:
+    from .recording_set import RecordingSet
+
+_NITROGEN = 77.4
+"""Boiling point [K] (CRC Handbook)."""
+
+# limit: highest fall that is not asked back [m]: a stairwell
+_STAIRWELL = 20.0
 
 
 def questions_of(found: RecordingSet) -> list[str]:
@@ -73,3 +83,39 @@ def _twice(found: RecordingSet) -> Iterator[str]:
     if again:
         shown = ", ".join(again[:3]) + (", ..." if len(again) > 3 else "")
         yield f"every number of {len(again)} trials stands in another too ({shown}): entered twice?"
+
+
+def notes_of(found: RecordingSet) -> list[str]:
+    """Return a line for each number that is not used or, as a whole, perhaps in another unit."""
+    notes = []
+    for key in found.setup.noise:
+        column = key.removesuffix(RELATIVE_SUFFIX)
+        used = column in found.observed or (key in TRACE_NOISE and bool(found.traces))
+        used |= column == LOAD and bool(found.trials.pressed.any())
+        if not used and key not in RIG_NOISE:
+            notes.append(f"noise.{key} is not used: the set has no values of {column}")
+        elif column in found.observed and np.nanmin(found.values(column)) > 0.0:
+            noise, most = found.setup.noise[key], np.nanmax(found.values(column))
+            if noise > (most if key == column else 1.0):
+                notes.append(f"noise.{key} {noise:g} is above every reading: in another unit?")
+    columns = found.trials.observables.values()
+    empty = (
+        np.all([np.isnan(c) for c in columns], axis=0) if columns else np.ones(len(found.trials))
+    )
+    bare = [
+        name for name, none in zip(found.trials.trial, empty, strict=True)
+        if none and name not in found.traces
+    ]  # fmt: skip
+    if bare:
+        notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
+    trials = found.trials
+    angles = trials.angle_deg[~trials.pressed]
+    if angles.size and np.all(angles <= np.round(np.pi / 2.0, 1)):
+        notes.append(f"no angle_deg is above {angles.max():g}: are they in radians?")
+    if (high := trials.drop_height_m[trials.drop_height_m > _STAIRWELL]).size:
+        notes.append(f"drop_height_m {high[0]:g}: is it in another unit?")
+    air = found.setup.environment.temperature_K
+    kelvins = (*trials.temperature_K, *([air.value] if air else []))
+    if cold := [kelvin for kelvin in kelvins if kelvin < _NITROGEN]:
+        notes.append(f"temperature_K {cold[0]:g}: is it in degrees Celsius?")
+    return notes

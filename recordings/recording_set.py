@@ -24,13 +24,14 @@ from ..core.inputs.csv_table import Problems
 from ..core.inputs.flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
 from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import parse_model, read_toml
-from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
+from ..core.observables import LOAD, RELATIVE_SUFFIX
 from ..core.output import finish, locked, write_files
 from ..core.rig import BodyTable, Quantity, StrikerTable
 from . import noise, second_sphere
 from .columns import MEASURED
 from .noise import Noise
 from .notebook import picture_of, table_of
+from .questions import notes_of
 from .rules import RULES
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
@@ -39,9 +40,6 @@ from .trials import Trials, read_trials, trials_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_NITROGEN = 77.4
-"""Boiling point [K] (CRC Handbook)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -261,7 +259,7 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
         mistakes += _without_noise(found)
     if mistakes:
         raise InputErrors(tuple(mistakes))
-    return replace(found, notes=tuple(_notes(found)))
+    return replace(found, notes=tuple(notes_of(found)))
 
 
 def _read_setup(
@@ -429,39 +427,6 @@ def _without_noise(found: RecordingSet) -> list[InputError]:
         for name in found.observed
         if np.isnan(found.std(name)[~np.isnan(found.values(name))]).any()
     ]  # fmt: skip
-
-
-def _notes(found: RecordingSet) -> list[str]:
-    notes = []
-    for key in found.setup.noise:
-        column = key.removesuffix(RELATIVE_SUFFIX)
-        used = column in found.observed or (key in TRACE_NOISE and bool(found.traces))
-        used |= column == LOAD and bool(found.trials.pressed.any())
-        if not used and key not in RIG_NOISE:
-            notes.append(f"noise.{key} is not used: the set has no values of {column}")
-        elif column in found.observed and np.nanmin(found.values(column)) > 0.0:
-            noise, most = found.setup.noise[key], np.nanmax(found.values(column))
-            if noise > (most if key == column else 1.0):
-                notes.append(f"noise.{key} {noise:g} is above every reading: in another unit?")
-    columns = found.trials.observables.values()
-    empty = (
-        np.all([np.isnan(c) for c in columns], axis=0) if columns else np.ones(len(found.trials))
-    )
-    bare = [
-        name for name, none in zip(found.trials.trial, empty, strict=True)
-        if none and name not in found.traces
-    ]  # fmt: skip
-    if bare:
-        notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
-    trials = found.trials
-    angles = trials.angle_deg[~trials.pressed]
-    if angles.size and np.all(angles <= np.round(np.pi / 2.0, 1)):
-        notes.append(f"no angle_deg is above {angles.max():g}: are they in radians?")
-    air = found.setup.environment.temperature_K
-    kelvins = (*trials.temperature_K, *([air.value] if air else []))
-    if cold := [kelvin for kelvin in kelvins if kelvin < _NITROGEN]:
-        notes.append(f"temperature_K {cold[0]:g}: is it in degrees Celsius?")
-    return notes
 
 
 def write(found: RecordingSet, folder: Path | str) -> None:

@@ -207,6 +207,9 @@ def test_rows_are_not_blamed_for_what_set_toml_lacks(wrong, tmp_path):
     ("old", "new", "note"),
     [(",90,", ",1.5708,", "no angle_deg is above 1.5708: are they in radians?"),
      ("restitution_std", "temperature_K", "temperature_K 0.01: is it in degrees Celsius?"),
+     ("impact_speed_m_s,restitution,restitution_std\na,rod,90,1.0",
+      "drop_height_m,restitution,restitution_std\na,rod,90,100",
+      "drop_height_m 100: is it in another unit?"),
      ("restitution = 0.01", "restitution = 1",
       "noise.restitution 1 is above every reading: in another unit?")],
 )  # fmt: skip
