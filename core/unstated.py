@@ -26,7 +26,12 @@ def unstated_equal(cls: type[Value]) -> type[Value]:
     numbers = attrgetter(*(f.name for f in fields(cls) if f.compare))  # type: ignore[arg-type]
 
     def key(value: Any) -> tuple[Any, ...]:
-        return tuple([None if isinstance(v, float) and v != v else v for v in numbers(value)])
+        found: tuple[Any, ...] = numbers(value)
+        # caches ask a million times in a diagnosis: no look at each number where all are stated
+        for v in found:
+            if v != v:
+                return tuple([None if isinstance(v, float) and v != v else v for v in found])
+        return found
 
     def equal(self: Any, other: object) -> Any:
         if self is other:

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 
@@ -182,18 +183,15 @@ class Simulator:
 
     def _rows(self, scenes: list[Scene]) -> Array:
         """Simulate what was not met before: a number of one striker leaves the others' scenes."""
-        met, rows, new = self.met, self.rows, dict[Scene, int]()
-        if len(met) + len(scenes) > _KEPT:
+        met, rows = self.met, self.rows
+        # what was met and has no rows: the simulation of it was stopped
+        if len(rows) < len(met) or len(met) + len(scenes) > _KEPT:
             met.clear()
             rows.clear()
-        # hashing a scene takes a tenth of the time of a simple impact: once where it was met
-        places = [
-            new.setdefault(s, len(met) + len(new)) if (i := met.get(s)) is None else i
-            for s in scenes
-        ]
-        if new:
-            rows.extend(_struck_or_pressed(list(new)))
-            met.update(new)
+        # hashing a scene takes a tenth of the time of a simple impact: once
+        places = [met.setdefault(s, len(met)) for s in scenes]
+        if new := list(islice(met, len(rows), None)):
+            rows.extend(_struck_or_pressed(new))
             self.tally["impacts"] += len(new)
         return np.stack([rows[i] for i in places])
 

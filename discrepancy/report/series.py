@@ -121,12 +121,15 @@ def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
         def shown(x: float, log: bool = log, scale: float = row.scale) -> float:
             return scale * (math.exp(x) if log else float(x))
 
+        at = shown(cells.value[i])
+        # of a reading near 0 the error is many times the reading: no exponential of that
+        off = float(std[i]) * (at if log else row.scale)
         found.append(
             SeriesPoint(
                 name, row.unit, series_of(conditions[k]), k + 1, int(cells.count[i]),
                 {a.key: float(a.values[k]) for a in along},
-                shown(cells.value[i]), shown(cells.value[i] - std[i]),
-                shown(cells.value[i] + std[i]), shown(stated[i]), shown(base.prediction[i]),
+                at, max(at - off, 0.0) if log else at - off, at + off,
+                shown(stated[i]), shown(base.prediction[i]),
                 shown(named[i]) if best.mechanisms else math.nan,
                 bool(counts[i]),
             )

@@ -248,6 +248,18 @@ def test_what_is_drawn_and_doubted_is_all_that_the_comparison_counts(toy: Any) -
     assert f"{FORM} +5.0" in _took(v, best)
 
 
+def test_a_dent_read_near_zero_is_drawn_with_its_error(toy: Any) -> None:
+    """Noise of .5 um leaves 1 nm of a dent: a thousand times the reading, and no exponential."""
+    problem = toy.problem([0.0])
+    cells = replace(problem.cells, observable=("permanent_depth_m",),
+                    value=np.log([1e-9]), std=np.array([500.0]))  # fmt: skip
+    v: Any = SimpleNamespace(problem=replace(problem, cells=cells), best=toy.fit_of([0.0]),
+                             stated=np.log([1e-6]), ranking=SimpleNamespace(base=toy.fit_of([0.0]))
+                             )  # fmt: skip
+    (drawn,) = points_of(v)
+    assert (drawn.low, drawn.measured, drawn.high) == pytest.approx((0.0, 1e-3, 0.501))  # [um]
+
+
 @pytest.mark.parametrize(("share", "told"), [(0.98, True), (0.87, False)])
 def test_what_else_of_its_family_does_as_a_wrong_strength_is_told(share: float, told: bool) -> None:
     v = said("wrong-input", 0.01, Located((), (), 3.0))
