@@ -93,9 +93,17 @@ def rank(
             reason = f"its largest plausible effect is {size:.1g} standard errors in all"
         if mechanism.named and not is_wrong(mechanism):
             excluded[mechanism.name] = reason
-    problem, base, stated, screened = _cleared(simulator, base, stated, screened)
-    simulator = simulator.of(problem)
-    fits = _leading_fits(simulator, base, stated, screened, progress)
+    lead = max(screened, key=lambda s: s.log_bayes, default=None)
+    known = {}
+    if lead is not None and lead.log_bayes > RULES.leads:
+        # a large effect moves the derivatives: judge single values by its own fit
+        known[lead.mechanism.name] = _in_full(simulator, stated, lead)
+    problem = _cleared(simulator, [*known.values(), base][0])
+    if problem is not simulator.problem:
+        known, simulator = {}, simulator.of(problem)
+        base, stated = fit(simulator, (), start=base, rounds=2), as_stated(simulator)
+        screened = [replace(s, log_bayes=_gain(stated, base, s.effect)) for s in screened]
+    fits = _leading_fits(simulator, base, stated, screened, known, progress)
     progress("sharpening the leading fits")
     fits = sharpened_leading(simulator, fits, base)
     fitted = {f.name: f.log_evidence - base.log_evidence for f in fits}
@@ -110,12 +118,21 @@ def rank(
     )  # fmt: skip
 
 
+def _in_full(simulator: Simulator, stated: Fit, found: Screened) -> Fit:
+    """Fit a screened mechanism from the stated numbers: beside the true effect they are near."""
+    return fit(
+        simulator, (found.mechanism,), start=stated, place=found.place, rounds=2,
+        effect=found.effect,
+    )  # fmt: skip
+
+
 def _leading_fits(
-    simulator: Simulator, base: Fit, stated: Fit, screened: Sequence[Screened], progress: Progress
-) -> list[Fit]:
+    simulator: Simulator, base: Fit, stated: Fit, screened: Sequence[Screened],
+    known: Mapping[str, Fit], progress: Progress,
+) -> list[Fit]:  # fmt: skip
     """Fit in full what leads by its screening, until no screening comes near the best fit.
 
-    Beside the true effect the stated numbers are near what is stated: a fit begins there.
+    `known`: fits that there are already.
     """
     order = sorted(screened, key=lambda s: -s.log_bayes)
     fits: list[Fit] = []
@@ -125,10 +142,7 @@ def _leading_fits(
         if len(fits) >= RULES.full and found.log_bayes <= least:
             break
         progress(f"fitting {found.mechanism.name}")
-        one = fit(
-            simulator, (found.mechanism,), start=stated, place=found.place, rounds=3,
-            effect=found.effect,
-        )  # fmt: skip
+        one = known.get(found.mechanism.name) or _in_full(simulator, stated, found)
         fits.append(one)
         best = max(best, one.log_evidence - base.log_evidence)
     return fits
@@ -181,28 +195,10 @@ def sizes(found: Screened, base: Fit) -> Array:
     return np.asarray(np.linalg.norm(found.effect / noise, axis=1))
 
 
-def _cleared(
-    simulator: Simulator, base: Fit, stated: Fit, screened: list[Screened]
-) -> tuple[Problem, Fit, Fit, list[Screened]]:
-    """Take the weight from outliers, and fit and screen again what that changes."""
-    judge = base
-    lead = max(screened, key=lambda s: s.log_bayes, default=None)
-    if lead is not None and lead.log_bayes > RULES.leads:
-        # a large effect moves the derivatives: judge single values by its own fit
-        judge = fit(
-            simulator, (lead.mechanism,), start=base, place=lead.place, rounds=2, effect=lead.effect
-        )
-    problem = simulator.problem
-    outliers = outlying(problem, judge)
-    if not outliers.any():
-        return problem, base, stated, screened
-    problem = without_weight(problem, outliers)
-    simulator = simulator.of(problem)
-    again, stated = fit(simulator, (), start=base, rounds=2), as_stated(simulator)
-    return (
-        problem, again, stated,
-        [replace(s, log_bayes=_gain(stated, again, s.effect)) for s in screened],
-    )  # fmt: skip
+def _cleared(simulator: Simulator, judge: Fit) -> Problem:
+    """Take the weight from what is an outlier by a fit; the same problem where nothing is."""
+    outliers = outlying(simulator.problem, judge)
+    return without_weight(simulator.problem, outliers) if outliers.any() else simulator.problem
 
 
 def sharpened_leading(
