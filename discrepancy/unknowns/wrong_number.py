@@ -14,6 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeGuard
 
+import numpy as np
+
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ...core.rig import StrikerTable
@@ -157,21 +159,40 @@ class WrongHeight(WrongNumber):
 
     measure, told = "offset", "By {}"
 
-    def __init__(self, most: float) -> None:
-        super().__init__("drop_height_m", "height", "all heights of fall are off by one length")
-        self.equations = "drop_height_m plus the offset"
+    def __init__(
+        self, most: float, key: str = "drop_height_m", which: str = "heights of fall"
+    ) -> None:
+        super().__init__(key, "height", f"all {which} are off by one length")
+        self.equations = f"{key} plus the offset"
         told = "within two diameters"
-        self.parameters = (
-            Parameter("drop_height_m_offset", "m", -most, most, "linear", 0.0, told),
-        )  # fmt: skip
+        self.parameters = (Parameter(f"{key}_offset", "m", -most, most, "linear", 0.0, told),)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Return the scene with the speed of the other height."""
         if not around.from_height or scene.press is not None:
             return scene
         a = scene.approach
-        fallen = a.speed**2 + 2.0 * scene.gravity * values["drop_height_m_offset"]
+        fallen = a.speed**2 + 2.0 * scene.gravity * values[self.parameters[0].name]
         return scene.with_(approach=replace(a, speed=math.sqrt(max(fallen, 0.04 * a.speed**2))))
+
+
+class WrongHeights(WrongHeight):
+    """Those of the rebounds too: restitutions are roots of ratios of heights so read."""
+
+    def __init__(self, most: float) -> None:
+        super().__init__(most, "heights_m", "heights, of fall and of rebound,")
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Return the observables with the restitution that such heights give."""
+        off = values[self.parameters[0].name]
+        fallen = np.array([
+            s.approach.speed**2 / (2.0 * s.gravity) if a.from_height and s.press is None else np.inf
+            for s, a in situations
+        ])  # fmt: skip
+        e, part = seen["restitution"], off / fallen
+        return {**seen, "restitution": np.sqrt(np.maximum(e**2 + (e**2 - 1.0) * part, 0.0))}
 
 
 class WrongAngle(WrongNumber):
@@ -273,6 +294,8 @@ def wrong_numbers(
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
         yield WrongHeight(4.0 * fallen)
+        if "restitution" in observed:
+            yield WrongHeights(4.0 * fallen)
     if oblique:
         yield WrongAngle()
     if squares:

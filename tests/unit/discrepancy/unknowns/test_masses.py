@@ -76,9 +76,9 @@ def test_what_contradicts_the_density_is_what_could_be_so_far_off(tmp_path, time
 
 def measured(
     radius: float = 5e-3, *, striker: str = "ball", height_off: float = 1.0, dent_off: float = 1.0,
-    power: float = 1.0,
+    power: float = 1.0, top: float = 0.0,
 ) -> str:  # fmt: skip
-    """Readings of a ball, of 5 mm, in units off by a factor."""
+    """Readings of a ball, of 5 mm, in units off by a factor; heights, by which all was read, by m."""
     ball, flat = (
         ds.Material(E=E, nu=0.3, Sy=Sy, density=rho)
         for E, Sy, rho in ((2.08e11, 1.7e9, 7800), (2.1e11, 3e8, 7850))
@@ -89,8 +89,9 @@ def measured(
             pair, mass=TRUE * (radius / 5e-3) ** 3, speed=math.sqrt(2.0 * 9.81 * height)
         )["fitted"]
         dent = 2.0 * float(ds.LAWS["fitted"].contact_radius(pair, blow.peak_depth_m)) * dent_off
-        rows += f"{striker}{k},{striker},90,{height * height_off},"
-        rows += f"{blow.restitution**power:.4f},{dent:.4e}\n"
+        rows += f"{striker}{k},{striker},90,{height * height_off + top},"
+        e = math.sqrt((blow.restitution**2 * height + top) / (height + top))
+        rows += f"{e**power:.4f},{dent:.4e}\n"
     return rows
 
 
@@ -118,6 +119,13 @@ def test_ratios_of_heights_are_squared_restitutions(tmp_path) -> None:
     assert wrong.number.key == "restitution_power"
     assert wrong.probability > 0.5
     assert wrong.low < 2.0 < wrong.high
+
+
+def test_heights_to_the_top_of_the_ball_are_one_length_in_falls_and_rebounds(tmp_path) -> None:
+    (wrong,) = ds.diagnose(written(tmp_path, rows=measured(top=0.01))).verdict.wrong_inputs
+    assert wrong.number.key == "heights_m"
+    assert wrong.probability > 0.8
+    assert wrong.low < -0.01 < wrong.high
 
 
 def test_one_slip_in_all_strikers_is_one_number(tmp_path) -> None:
