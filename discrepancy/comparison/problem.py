@@ -190,7 +190,10 @@ class Problem:
         """
         rig = self.rig_at(z)
         if factors:
-            rig = rig.with_({k: f * rig.of[k] for k, f in factors.items()})
+            # a mass that agrees with a wrong radius was worked out from it
+            agrees = {k.removesuffix(".mass_kg") for k, off in self.by_density.items() if not off}
+            solid = replace(rig, solids=rig.solids | agrees & rig.metals.keys())
+            rig = solid.with_({k: f * rig.of[k] for k, f in factors.items()})
         second = second_of(rig)
         used = {c.striker for c in self.conditions}
         b = z[self.n_nuisances :]

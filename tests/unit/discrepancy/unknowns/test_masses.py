@@ -146,7 +146,7 @@ def test_one_slip_in_all_strikers_is_one_number(tmp_path) -> None:
 def test_a_diameter_for_a_radius_is_named_whoever_weighed_the_ball(tmp_path) -> None:
     """Readings of a ball of 5 mm, on a sheet that says 10 mm."""
     rows = measured()
-    for mass, sure in (("", 0.5), (str(TRUE), 0.9)):
+    for mass, sure in (("", 0.5), (str(TRUE), 0.9), (str(8.0 * TRUE), 0.5)):
         verdict = ds.diagnose(written(tmp_path, radius=0.01, mass=mass, rows=rows)).verdict
         (wrong,) = verdict.wrong_inputs
         assert wrong.number.key == "strikers.ball.tip_radius_m"
