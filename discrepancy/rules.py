@@ -104,10 +104,6 @@ class DiagnosisRules:
         6, "pairs that are fitted, if they lead by the sum of their effects [-]",
         "of 172 sets of three makes as many truths lead as with eleven",
     )  # fmt: skip
-    partners: int = rule(
-        3, "leading pairs whose second effect is simulated beside the fit of the first [-]",
-        "a verdict lists three",
-    )  # fmt: skip
     pair_step: float = rule(
         0.12,
         "step at which the mutual effect of two mechanisms is simulated [widths of the prior]",

@@ -45,7 +45,8 @@ def with_pairs(
 ) -> Ranking:
     """Screen all pairs, one of them a mechanism, and fit those that lead by it.
 
-    What leads is fitted, to the problem of the singles; the rest count by their screening.
+    What leads is fitted, to the problem of the singles; the rest count by their screening. What
+    decides together where bodies slide is no sum: beside the leader it is simulated.
     """
     simulator = simulator.of(ranking.problem)
     prior = Priors.of(ranking)
@@ -54,9 +55,13 @@ def with_pairs(
         return prior.log(names) + tempered(gain)
 
     least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
-    order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
-    unsure = [c for c in order[: RULES.partners] if weight(c.names, c.gain) > least - RULES.near]
-    order[: len(unsure)] = [_there(simulator, ranking, c) for c in unsure]
+    lead = ranking.singles[0].name if ranking.singles else ""
+    order = [
+        _there(simulator, ranking, c)
+        if c.one.mechanism.aslant and c.two.mechanism.aslant and lead in c.names
+        else c
+        for c in _candidates(ranking)
+    ]
     order.sort(key=lambda c: -weight(c.names, c.gain))
     pairs: list[Fit] = []
     best = -math.inf
@@ -112,13 +117,14 @@ def _otherwise(ranking: Ranking, lead: Fit, screened: Screened) -> Array:
 
 
 def _there(simulator: Simulator, ranking: Ranking, c: _Candidate) -> _Candidate:
-    """The same pair, by what the other does beside the fit of the one: simulated there."""
-    other = c.two if c.one.mechanism is c.lead.mechanisms[0] else c.one
-    own, z = c.lead.grid.values(c.lead.place), c.lead.z
+    """The same pair, by what the other does beside the leading fit: simulated there."""
+    lead = ranking.singles[0]
+    other = c.two if c.one.mechanism is lead.mechanisms[0] else c.one
+    own, z = lead.grid.values(lead.place), lead.z
     points = [Point(z, {**own, **values}) for values in other.grid.nodes()]
     both = simulator.predict((c.one.mechanism, c.two.mechanism), points)
-    alone = simulator.predict(c.lead.mechanisms, [Point(z, own)])[0]
-    there = _together(ranking, c.lead, other, other.grid.refine(both - alone))
+    alone = simulator.predict(lead.mechanisms, [Point(z, own)])[0]
+    there = _together(ranking, lead, other, other.grid.refine(both - alone))
     return max(c, there, key=lambda one: one.gain)
 
 

@@ -70,6 +70,7 @@ class Tilt(Mechanism):
     )  # fmt: skip
     form: ClassVar[float] = 0.05
     in_flight: ClassVar[bool] = True
+    aslant: ClassVar[bool] = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""

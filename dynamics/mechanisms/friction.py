@@ -14,6 +14,8 @@ from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Val
 class SlidingMechanism(Mechanism):
     """A mechanism of the motion along the flat."""
 
+    aslant: ClassVar[bool] = True
+
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""
         if not any(is_oblique(scene) for scene, _ in situations):

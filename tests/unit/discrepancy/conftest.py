@@ -36,6 +36,7 @@ class Effect:
     law_error: float = 1.0
     scale_error: float = 0.0
     jumps: bool = False
+    aslant: bool = False
     named: bool = True
     rests_on: tuple[str, ...] = ()
     title: str = "a shape"

@@ -176,6 +176,27 @@ def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:
     assert pair.log_evidence > found.singles[0].log_evidence + 10.0
 
 
+@pytest.mark.parametrize("aslant", [True, False])
+def test_two_that_decide_together_are_screened_by_simulation(toy, aslant) -> None:
+    """Beside what rises the other bends what it alone would only lower."""
+    effects = (
+        toy.Effect("rising", RISING, aslant=aslant), toy.Effect("low", (-3.0,) * 8, aslant=aslant)
+    )  # fmt: skip
+
+    class Together(toy.Simulator):
+        def predict(self, mechanisms, points):
+            found = super().predict(mechanisms, points)
+            for row, point in zip(found, points, strict=True):
+                both = [point.values[m.name]["size"] for m in mechanisms]
+                row += math.prod(both) * np.array(BENT) if len(both) == 2 else 0.0
+            return found
+
+    data = 0.5 * np.array(RISING) - 2.4 + 0.4 * np.array(BENT)
+    simulator = Together(toy.problem(data, derivative=np.zeros((8, 0))))
+    pairs = with_pairs(simulator, rank(simulator, mechanisms=effects)).pairs
+    assert [pair.name for pair in pairs] == ["rising+low"] * aslant
+
+
 def test_a_pair_of_many_parameters_costs_the_sum_of_its_nodes_not_their_product() -> None:
     """Two effects that bend, of three parameters each, and a product of both between them."""
     numbers = tuple(Parameter(k, "-", 0.0, 1.0, "linear", 0.0, "", nodes=9) for k in "abc")

@@ -78,7 +78,7 @@ def measured(
     radius: float = 5e-3, *, striker: str = "ball", height_off: float = 1.0, dent_off: float = 1.0,
     power: float = 1.0, top: float = 0.0,
 ) -> str:  # fmt: skip
-    """Readings of a ball, of 5 mm, in units off by a factor; heights, by which all was read, by m."""
+    """Readings of a ball, of 5 mm, in units off by a factor; `top`: what all heights are off by."""
     ball, flat = (
         ds.Material(E=E, nu=0.3, Sy=Sy, density=rho)
         for E, Sy, rho in ((2.08e11, 1.7e9, 7800), (2.1e11, 3e8, 7850))
