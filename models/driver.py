@@ -66,7 +66,7 @@ class Rows(NamedTuple):
 
 def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> Rows:
     """Take a call apart; `parameters` is the law's own method of that name."""
-    d, pairs = depths_of(depth), [pair] if isinstance(pair, Pair) else pair
+    d = depths_of(depth)
     if isinstance(pair, Pair):
         table = parameters(pair)[None, :]
         row = np.zeros(d.size, dtype=np.int64)
@@ -82,10 +82,4 @@ def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> 
                 allowed="one pair, or one for each entry of the first axis",
             )  # fmt: skip
         row = np.repeat(np.arange(len(table)), d.size // len(table))
-    flat = np.ascontiguousarray(d.ravel())
-    through = flat > 2.0 * np.array([p.R for p in pairs])[row]
-    if through.any():
-        raise InputError(
-            f"{flat[through][0]:g}", key="depth", allowed="in m, at most the sphere's diameter"
-        )
-    return Rows(np.ascontiguousarray(table), row, flat, d.shape)
+    return Rows(np.ascontiguousarray(table), row, np.ascontiguousarray(d.ravel()), d.shape)

@@ -240,7 +240,6 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
         "seed: 1.9": lambda: ds.diagnose("leeb-steel-800hv", seed=1.9),
         "law: 3": lambda: ds.compare_laws(pair, law=["hertz", 3]),
         "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
-        "depth: 20 .*in m": lambda: fitted.loading(pair, [20e-6, 20.0]),
         "pair: Material": lambda: fitted.loading(steel, 1e-6),
         "pair: 3": lambda: fitted.residual(3, 1e-6),
         "depth: 3 depths of 2 pairs": lambda: fitted.loading([pair, pair], [1e-6, 2e-6, 3e-6]),
