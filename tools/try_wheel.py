@@ -64,7 +64,7 @@ SOLVER = (
     Use("campaign show {case} --out run", "Delta/R"),
     Use("campaign refine {case} --out run", "largest difference"),
     Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
-    Use("campaign repair --out run", "cases are whole"),
+    Use("campaign repair --out run", "whole in run"),
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign reproduction", "checkout", 2),
     Use("export law --out sources", "dentscope_contact.f90"),
