@@ -94,12 +94,13 @@ def rank(
         if mechanism.named and not is_wrong(mechanism):
             excluded[mechanism.name] = reason
     lead = max(screened, key=lambda s: s.log_bayes, default=None)
-    known = {}
+    known, judge = {}, base
     if lead is not None and lead.log_bayes > RULES.leads:
         # a large effect moves the derivatives: judge single values by its own fit
-        known[lead.mechanism.name] = _in_full(simulator, stated, lead)
-    problem = _cleared(simulator, [*known.values(), base][0])
-    if problem is not simulator.problem:
+        judge = known[lead.mechanism.name] = _in_full(simulator, stated, lead)
+    problem, outliers = simulator.problem, outlying(simulator.problem, judge)
+    if outliers.any():
+        problem = without_weight(problem, outliers)
         known, simulator = {}, simulator.of(problem)
         base, stated = fit(simulator, (), start=base, rounds=2), as_stated(simulator)
         screened = [replace(s, log_bayes=_gain(stated, base, s.effect)) for s in screened]
@@ -193,12 +194,6 @@ def sizes(found: Screened, base: Fit) -> Array:
     """Return effects over all cells in the measurements' standard errors, (k,) over the grid."""
     noise = np.sqrt(np.diag(base.linear.noise))
     return np.asarray(np.linalg.norm(found.effect / noise, axis=1))
-
-
-def _cleared(simulator: Simulator, judge: Fit) -> Problem:
-    """Take the weight from what is an outlier by a fit; the same problem where nothing is."""
-    outliers = outlying(simulator.problem, judge)
-    return without_weight(simulator.problem, outliers) if outliers.any() else simulator.problem
 
 
 def sharpened_leading(

@@ -26,13 +26,12 @@ _PLACES = 250
 
 
 class _Candidate(NamedTuple):
-    """Two by the sum of their effects: ln B over the baseline, where in their priors, the fit."""
+    """Two by the sum of their effects: ln B over the baseline, where in their priors."""
 
     one: Screened
     two: Screened
     gain: float
     place: Array
-    lead: Fit
 
     @property
     def names(self) -> tuple[str, str]:
@@ -141,7 +140,7 @@ def _together(ranking: Ranking, lead: Fit, s: Screened, effect: Array) -> _Candi
     both = [(mine, lead.grid.places()[few][p]), (its, s.grid.places()[some][q])]
     (i, first), (j, second) = both if mine < its else both[::-1]
     place = np.concatenate([first, second])
-    return _Candidate(ranking.screened[i], ranking.screened[j], gain, place, lead)
+    return _Candidate(ranking.screened[i], ranking.screened[j], gain, place)
 
 
 def pair_effect(

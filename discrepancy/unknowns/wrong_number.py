@@ -294,7 +294,7 @@ def wrong_numbers(
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
         yield WrongHeight(4.0 * fallen)
-        if "restitution" in observed:
+        if "restitution" in observed and not oblique:
             yield WrongHeights(4.0 * fallen)
     if oblique:
         yield WrongAngle()
