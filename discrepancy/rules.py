@@ -435,6 +435,10 @@ class DiagnosisRules:
         5.0, "times that the strength of what is struck is rather wrong than another kind [-]",
         "tempers of one metal differ by 2, and no other number of a sheet is as rarely measured",
     )  # fmt: skip
+    thickness_wrong: float = rule(
+        0.5, "times that a plate's thickness is rather wrong than another kind [-]",
+        "waves act by it too: of 40 plates stated wrong it leads in 11, of 20 right ones in none",
+    )  # fmt: skip
     contradicted: float = rule(
         50.0, "times that a mass or radius is wrong where it contradicts the density; a mass that "
         "agrees is by this less [-]",

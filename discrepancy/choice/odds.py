@@ -140,8 +140,8 @@ def _acts(ranking: Ranking, screened: Screened) -> bool:
 def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
     """Ln prior of each single explanation: mechanisms alike, but for what every metal does.
 
-    Wrong numbers share by their kind: alike, but for the strength of what is struck, and within a
-    kind by the bodies.
+    Wrong numbers share by their kind: alike, but for the strength of what is struck and a plate's
+    thickness, and within a kind by the bodies.
     """
     kinds: dict[str, list[str]] = {}
     named = []
@@ -151,8 +151,8 @@ def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
         else:
             named.append(m.name)
     found = _shared("mechanisms", {n: RULES.every_metal if n in METAL else 1.0 for n in named})
-    weight = {kind: RULES.strength_wrong if kind == STRENGTH else 1.0 for kind in kinds}
-    alike = {n: weight[kind] / len(names) for kind, names in kinds.items() for n in names}
+    weight = {STRENGTH: RULES.strength_wrong, "thickness": RULES.thickness_wrong}
+    alike = {n: weight.get(kind, 1.0) / len(names) for kind, names in kinds.items() for n in names}
     return found | _shared("inputs", alike)
 
 

@@ -20,6 +20,7 @@ from ...dynamics.files.second import second_of
 from ...dynamics.mechanisms import MECHANISMS
 from ...dynamics.mechanisms.arithmetic import as_deep, deepest
 from ...dynamics.mechanisms.base import Constants, Mechanism
+from ...dynamics.mechanisms.half_space_waves import HalfSpaceWaves
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ...recordings.bench import Bench
@@ -129,10 +130,13 @@ class Problem:
         fallen = max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0)
         observed = tuple(dict.fromkeys(self.cells.observable))
         oblique = any(c.incidence < math.pi / 2.0 - 1e-6 for c in self.conditions)
+        around = self.conditions[0].around
+        plate = around.thickness > 0.0 and not around.support_mass > 0.0 and around.struck is None
+        plate &= HalfSpaceWaves.name not in (m.name for m in self.assumed)
         found = wrong_numbers(
             frozenset(known), strikers, observed, fallen=fallen, oblique=oblique,
             squares="restitution" in observed and self.baseline != "measured-restitution",
-            misread=self.misread,
+            plate=plate, misread=self.misread,
         )  # fmt: skip
         return tuple(found)
 

@@ -27,6 +27,7 @@ from ...dynamics.mechanisms.base import (
     Surroundings,
     Values,
 )
+from ...dynamics.mechanisms.half_space_waves import HalfSpaceWaves
 from ...dynamics.scene import Scene
 from ...recordings.checks.limits import geometric_mass
 from ..rules import RULES
@@ -51,7 +52,8 @@ _SETTLED = {
     "strength": "a hardness test: if it gives what is stated, the metal feels the rate of the "
     "blows",
     "modulus": "the metal's name or certificate", "radius": "a calliper, or a picture of the tip",
-    "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
+    "mass": "a scale", "thickness": "a calliper on the flat's edge",
+    "speed": "a second way to measure the speed: a height, a ruler in the film",
     "friction": "a slope or a pull with a spring balance",
     "height": "a ruler from the flat to the ball's lowest point",
     "angle": "a square on the flat: 90 degrees is upright",
@@ -122,6 +124,26 @@ class WrongNumber(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Return the scene as it is: the number is changed before scenes are made."""
         return scene
+
+
+class WrongThickness(WrongNumber):
+    """The flat's, by the waves that run off into it: as theory says, of another plate."""
+
+    static = False
+    form, rests_on = HalfSpaceWaves.form, HalfSpaceWaves.rests_on
+
+    def __init__(self) -> None:
+        title = "the stated thickness of the flat is wrong, by the waves that run off into it"
+        super().__init__("target.thickness_m", "thickness", title, "m")
+        self.equations = "waves of scale 1 into a plate of thickness_m times the factor"
+        # at 1 the waves act: no factor does nothing
+        self.parameters = (replace(self.parameters[0], neutral=math.inf),)
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Return the scene with the waves into the other plate."""
+        other = around.thickness * values[self.parameters[0].name]
+        waves = HalfSpaceWaves()
+        return waves.attach(scene, waves.usual(around), replace(around, thickness=other))
 
 
 class WrongReading(WrongNumber):
@@ -264,6 +286,7 @@ def wrong_numbers(
     fallen: float,
     oblique: bool,
     squares: bool,
+    plate: bool,
     misread: Mapping[str, float],
 ) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
@@ -273,6 +296,7 @@ def wrong_numbers(
     - `fallen`: largest radius of what falls from a stated height [m]; 0 where none does.
     - `oblique`: whether a rod leans, or a ball's path.
     - `squares`: whether a restitution is compared with a simulated one.
+    - `plate`: whether a thickness is stated, and waves into the flat are none that act anyway.
     - `misread`: key to the power of ten by which it is off.
     """
     tables = {"target": ("the flat", _OF_TARGET)}
@@ -300,6 +324,8 @@ def wrong_numbers(
         yield WrongAngle()
     if squares:
         yield Squared()
+    if plate:
+        yield WrongThickness()
     for name in observed if len(observed) > 1 else ():
         title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
         yield WrongReading(name, "reading", title, times=misread.get(name, 1.0))

@@ -174,3 +174,33 @@ def test_readings_of_unlike_signs_or_within_the_noise_have_no_unit() -> None:
     assert misread(1.0, 1.1, 0.9, predicted=1000.0) == {"rebound_spin_rad_s": 1e-3}
     assert misread(1.0, -1.1, -0.9, predicted=1000.0) == {}
     assert misread(1.0, 1.1, 0.9, predicted=0.1) == {}
+
+
+@pytest.mark.parametrize(("stated", "named"), [(0.02, True), (0.008, False)])
+def test_a_wrong_thickness_is_named_by_the_waves_into_a_plate(
+    tmp_path, set_of_balls, stated, named
+) -> None:
+    # balls on a plate of 8 mm that yields, by the explicit solution of tools/benchmarks
+    seen = (
+        (0.3, 0.588, 8.85e-5),
+        (0.8, 0.475, 7.33e-5),
+        (1.8, 0.384, 6.38e-5),
+        (3.5, 0.314, 5.77e-5),
+    )
+    noise = np.random.default_rng(0).normal(0.0, (3e-3, 5e-7), (5, 4, 2))
+    rows = "".join(
+        f"{v}-{k},ball,90,{v},{e + off[i, 0]},{t + off[i, 1]}\n"
+        for k, off in enumerate(noise) for i, (v, e, t) in enumerate(seen)
+    )  # fmt: skip
+    head = "trial,striker,angle_deg,impact_speed_m_s,restitution,contact_time_s\n"
+    folder = set_of_balls(
+        tmp_path, head + rows, noise={"restitution": 3e-3, "contact_time_s": 5e-7}, E="2.06e11",
+        Sy=f"5e8\nthickness_m = {stated}", balls={"ball": (1e-2, 3.27e-2)},
+    )  # fmt: skip
+    found = ds.diagnose(folder).verdict
+    assert [w.number.key for w in found.wrong_inputs] == ["target.thickness_m"] * named
+    if named:
+        # the theory's loss is within a tenth of the explicit one's
+        assert found.wrong_inputs[0].would_be[0] == pytest.approx(8e-3, rel=0.1)
+    else:
+        assert found.mechanisms == ("half-space-waves",)
