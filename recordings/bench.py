@@ -54,7 +54,7 @@ class Minutes(InputTable):
     weigh: Took | None = None
     """A striker on a scale."""
     calliper: Took | None = None
-    """A tip's radius by a calliper or in a picture."""
+    """A tip's radius, or a plate's thickness, by a calliper or in a picture."""
     instrument: Took | None = None
     """To set up an instrument that the set has not had."""
     build: Took | None = None

@@ -46,7 +46,7 @@ def with_units(simulator: Simulator) -> Problem:
     numbers = {
         (number.key, 10.0**power): misfit(_off(simulator, number, times=10.0**power))
         for number in problem.wrong_numbers
-        if type(number) is WrongNumber and problem.by_density.get(number.key, True)
+        if number.of_rig and problem.by_density.get(number.key, True)
         for power in _OF_KIND.get(number.kind, ())
     }  # fmt: skip
     best = min(numbers, key=lambda x: numbers[x], default=("", 1.0))

@@ -25,16 +25,19 @@ from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
-from ..unknowns.wrong_number import WrongNumber, is_wrong
+from ..unknowns.wrong_number import is_wrong
 from . import feasible
 from .foreseen import Settled, discrimination, foreseen, information
 from .session import Option, Proposal, Session, session_of, takes
 
 _ELSEWHERE = ("build", "observable")  # what the rig has not had
-_BY = {"Sy_Pa": "hardness", "mass_kg": "weigh", "tip_radius_m": "calliper", "radius_m": "calliper"}
+_BY = {
+    "Sy_Pa": "hardness", "mass_kg": "weigh", "tip_radius_m": "calliper", "radius_m": "calliper",
+    "thickness_m": "calliper",
+}  # fmt: skip
 _SETTLE = {
     "hardness": "test the hardness of {}: hardness_Pa in place of Sy_Pa",
-    "weigh": "weigh {}", "calliper": "measure the radius of {} with a calliper or in a picture",
+    "weigh": "weigh {}", "calliper": "measure the {what} of {} with a calliper or in a picture",
 }  # fmt: skip
 _ERRORS = dict(RULES.settled)
 _PRESSED = dict(RULES.press_reading)
@@ -209,7 +212,7 @@ def _settling(new: _Plan) -> None:
     """Numbers of the sheet that can be measured again, behind all cells."""
     problem = new.problem
     keys = [n.name for n in problem.nuisances]
-    keys += [one.key for one in problem.wrong_numbers if type(one) is WrongNumber]
+    keys += [one.key for one in problem.wrong_numbers if one.of_rig]
     for key in dict.fromkeys(keys):
         body, _, word = key.rpartition(".")
         kind = _BY.get(word, "")
@@ -220,7 +223,7 @@ def _settling(new: _Plan) -> None:
         of = "the flat" if body == "target" else body.removeprefix("strikers.")
         if second_of(problem.rig) is not None and body == "target":
             of = "the second sphere"
-        text = _SETTLE[kind].format(of)
+        text = _SETTLE[kind].format(of, what=word.removesuffix("_m").removeprefix("tip_"))
         told = Proposal(text, 0.0, kind, trial={"key": key}, minutes=minutes)
         new.options.append(Option(np.array([len(new.cells) + len(new.settled)]), told))
         new.settled.append(Settled(key, _ERRORS[kind]))

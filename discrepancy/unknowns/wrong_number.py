@@ -91,6 +91,8 @@ class WrongNumber(Mechanism):
 
     static = True
     form = 0.0
+    of_rig = True
+    """Whether the number itself is changed, by the factor."""
     measure = "factor"
     """Of how far it is off, as in verdict.json; `told` is it in words, around the number."""
     told = "By a factor of {}"
@@ -149,6 +151,8 @@ class WrongThickness(WrongNumber):
 class WrongReading(WrongNumber):
     """All readings of one observable off by a factor: a calibration, a unit, a definition."""
 
+    of_rig = False
+
     def after(
         self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
     ) -> Mapping[str, Array]:
@@ -159,6 +163,7 @@ class WrongReading(WrongNumber):
 class Squared(WrongNumber):
     """Restitutions that are their squares: ratios of heights, or of energies."""
 
+    of_rig = False
     measure, told = "power", "To the power of {}"
 
     def __init__(self) -> None:
@@ -179,6 +184,7 @@ class Squared(WrongNumber):
 class WrongHeight(WrongNumber):
     """All heights of fall off by one length: read to the ball's centre or top, or from a table."""
 
+    of_rig = False
     measure, told = "offset", "By {}"
 
     def __init__(
@@ -220,6 +226,7 @@ class WrongHeights(WrongHeight):
 class WrongAngle(WrongNumber):
     """All angles are the complements of what is stated, or nearly: read from the other line."""
 
+    of_rig = False
     measure, told = "complement", "By {} of the way to 90 degrees less each"
 
     def __init__(self) -> None:
@@ -273,7 +280,7 @@ def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict
     return {
         key: constants[m.name][m.parameters[0].name]
         for m in mechanisms
-        if type(m) is WrongNumber
+        if is_wrong(m) and m.of_rig
         for key in m.keys
     }
 

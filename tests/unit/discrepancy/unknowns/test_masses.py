@@ -202,5 +202,6 @@ def test_a_wrong_thickness_is_named_by_the_waves_into_a_plate(
     if named:
         # the theory's loss is within a tenth of the explicit one's
         assert found.wrong_inputs[0].would_be[0] == pytest.approx(8e-3, rel=0.1)
+        assert {"key": "target.thickness_m"} in [dict(p.trial) for p in found.proposals]
     else:
         assert found.mechanisms == ("half-space-waves",)
