@@ -63,7 +63,7 @@ def _finding(v: Verdict) -> str:
             f"noise and the stated uncertainties (probability {percent(p)})."
         )
     if v.verdict == WRONG_INPUT:
-        beside = _beside(v) or " Nothing else is missing then."
+        beside = _beside(v) or " These data need nothing else then."
         return f"{' '.join(map(_wrong, v.wrong_inputs))}{beside}{_family(v)}"
     if v.verdict == "missing-physics":
         first = "".join(f"{_wrong(w)} " for w in v.wrong_inputs)
