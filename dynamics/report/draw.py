@@ -34,7 +34,7 @@ CONDITIONS = {
     "approach_tangential_m_s": "tangential speed before [m/s]",
     "approach_spin_rad_s": "spin before [rad/s]",
 }  # fmt: skip
-"""What may be swept, in words."""
+"""The conditions that may be swept, in words; of any other number of a file its key."""
 
 
 def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[str, Any]]:
@@ -86,9 +86,9 @@ def draw_sweep(
                     swept[across], low, values + off, color=drawn.get_color(), alpha=0.2,
                     lw=float(alone), label="its standard deviation",
                 )  # fmt: skip
-        axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
+        axis.set(xlabel=CONDITIONS.get(across, across), ylabel=told.axis, xscale=scale)
         axis.grid(alpha=0.3)
-    fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)
+    fixed = ", ".join(f"{CONDITIONS.get(k, k)} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
     return made

@@ -134,6 +134,8 @@ def test_a_pair_is_struck_at_one_speed_or_several():
         ds.impact(hardens, speed=2.0, law="fitted")
     with pytest.raises(InputError, match="mass: missing"):
         ds.impact(ds.Pair(soft, hard, 5e-3), speed=1.0)
+    with pytest.raises(InputError, match="over: with a pair"):
+        ds.sweep(pair, over={"target.nu": [0.2, 0.3]})
     for wrong in ([], [1.0, math.nan], "2", -1.0, 0.0):
         for call in (ds.impact, ds.sweep):
             with pytest.raises(InputError):
@@ -291,7 +293,7 @@ def test_signatures_say_what_is_taken_and_one_thing_is_returned():
     # every key of [impact] and of [sweep] is a keyword, speed and mass by their short names
     names = {"impact_speed_m_s": "speed", "mass_kg": "mass"}
     for call, table in ((ds.impact, ImpactTable), (ds.sweep, SweepTable)):
-        taken = set(inspect.signature(call).parameters) - {"setup", "law"}
+        taken = set(inspect.signature(call).parameters) - {"setup", "law", "over"}
         keys = {names.get(k, k) for k in table.model_fields} - {"laws"}
         assert keys - taken == set()
         assert taken - keys == ({"mass", "friction"} if call is ds.impact else set())
