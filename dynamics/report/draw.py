@@ -44,7 +44,8 @@ def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[st
     """
     breaks = cycle(("-", "--", ":", "-.", (0, (6, 2, 1, 2, 1, 2))))
     return {
-        law: {"color": f"C{k % 10}", "ls": dash}
+        # nine, for five dashes and ten colours make law 11 the first again
+        law: {"color": f"C{k % 9}", "ls": dash}
         | ({"lw": 1.0, "alpha": 0.5} if law in doubts else {})
         for k, (law, dash) in enumerate(zip(laws, breaks, strict=False))
     }

@@ -49,3 +49,5 @@ def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
         style = [(line.get_color(), line.get_linestyle()) for line in (ours, theirs)]
         assert style == [(x["color"], x["ls"]) for x in draw.looks(["fitted", "hertz"]).values()]
     assert curves[0].get_lines()[1].get_label() == "hertz: elastic only"
+    every = [(look["color"], look["ls"]) for look in draw.looks(map(str, range(45))).values()]
+    assert len(set(every)) == 45

@@ -241,6 +241,9 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
         "seed": lambda: ds.diagnose("leeb-steel-800hv", seed=-1),
         "seed: 1.9": lambda: ds.diagnose("leeb-steel-800hv", seed=1.9),
         "law: 3": lambda: ds.compare_laws(pair, law=["hertz", 3]),
+        "law: hertz: .*would pass for phys": lambda: ds.diagnose(
+            "leeb-steel-800hv", law=ds.LAWS["hertz"]
+        ),
         "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
         "pair: Material": lambda: fitted.loading(steel, 1e-6),
         "pair: 3": lambda: fitted.residual(3, 1e-6),
