@@ -42,6 +42,8 @@ def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
     fast = impact("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
     assert fast.doubts == {"fitted": "a/R of about 1.1 is beyond 0.6"}
     curves = made.axes[2:]  # below the rig and the dent
+    assert curves[1].get_xlabel() == "time [us]"  # 0.03 ms: no tick has more than three digits
+    assert curves[1].get_xlim()[1] > 20.0
     for axis in curves:
         ours, theirs = axis.get_lines()
         assert (ours.get_alpha(), theirs.get_alpha()) == (None, 0.5)
