@@ -94,7 +94,7 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds, asked=ball.asked)
     shown, between = new_console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
-    for line in too_deep(chosen, ball.pair, [row.law.depth for row in rows]):
+    for line in too_deep(chosen, [(ball.pair, [row.law.depth for row in rows])]):
         say(line)
     for row in rows:
         for name in row.left_out:

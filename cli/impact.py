@@ -84,10 +84,10 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
     write_figure(picture(blow, exact=exact), out / f"{path.stem}.png", dpi=130)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
-    if setup.sweep.count and setup.repeats > 1:
+    if setup.varied and setup.repeats > 1:
         say(f"the sweep is of first blows: impact.repeats = {setup.repeats} acts above alone")
     unfinished = 0
-    if setup.sweep.count:
+    if setup.varied:
         files, unfinished, told = _sweep(setup, laws, out / f"{path.stem}-sweep", exact=exact)
         written += files
         if told:
@@ -108,6 +108,8 @@ def _sweep(
     """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
+    import numpy as np
+
     from ..dynamics.report.band import MOST_SWEPT, swept_stds, too_deep
     from ..dynamics.report.checks import swept_above_one, swept_walls
     from ..dynamics.report.draw import draw_sweep, swept_in_vain
@@ -116,16 +118,17 @@ def _sweep(
     first, *others = curves.values()
     stds = {} if exact or len(first) > MOST_SWEPT else swept_stds(setup, laws[0], first)
     first = first.joined(*others).with_stds(stds)
-    scene, depths = setup.scene(laws[0]), curves[laws[0].name]["peak_depth_m"]
-    told = [*too_deep(laws[0], scene.pair, depths)]
-    told += [*swept_above_one(first), *swept_walls(scene, first)]
+    scenes = [one.scene(laws[0]) for one in setup.rigs or (setup,)]
+    depths = np.split(curves[laws[0].name]["peak_depth_m"], len(scenes))
+    told = [*too_deep(laws[0], zip((one.pair for one in scenes), depths, strict=True))]
+    told += [*swept_above_one(first), *swept_walls(scenes[0], first)]
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
     written = [table]
     if (first["outcome"] == "completed").any():
-        write_figure(draw_sweep(setup.sweep.swept, curves, stds=stds), drawn, dpi=130)
+        write_figure(draw_sweep(setup.varied, curves, stds=stds), drawn, dpi=130)
         written.append(drawn)
-    for name in swept_in_vain(setup.sweep.swept, curves):
+    for name in swept_in_vain(setup.varied, curves):
         say(f"sweep.{name} changes nothing here")
     if find_spec("pyarrow"):
         first.to_parquet(parquet)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.arrays import Array
+from ..core.arrays import Array, Integers, Mask
 from ..core.errors import InputError
 from ..core.output import write_csv, write_file
 from ..core.tables import frame, html_table, parquet, text_table
@@ -54,7 +54,8 @@ class Impacts:
 
     def _shown(self) -> list[list[str]]:
         """Names and first rows of the columns that are shown."""
-        shown = {k: self.columns[k][:_ROWS_SHOWN].tolist() for k in _SHOWN if k in self.columns}
+        names = [k for k in dict.fromkeys((*self.swept, *_SHOWN)) if k in self.columns]
+        shown = {k: self.columns[k][:_ROWS_SHOWN].tolist() for k in names}
         rows = zip(*shown.values(), strict=True)
         cells = ([f"{x:.4g}" if isinstance(x, float) else str(x) for x in row] for row in rows)
         return [list(shown), *cells]
@@ -66,6 +67,10 @@ class Impacts:
     def _repr_html_(self) -> str:
         head, *rows = self._shown()
         return html_table(head, rows, title=f"{len(self)} impacts")
+
+    def at(self, rows: Integers | Mask) -> Impacts:
+        """Return these rows, by number or mask."""
+        return Impacts({k: v[rows] for k, v in self.columns.items()}, self.swept)
 
     def joined(self, *others: Impacts) -> Impacts:
         """Return these rows and those of `others`, which have the same columns."""
@@ -98,8 +103,7 @@ class Impacts:
         if not self.swept:
             raise InputError("no sweep", key="plot", allowed="what ds.sweep returns")
         laws = dict.fromkeys(self["law"].tolist())
-        each = {law: {k: v[self["law"] == law] for k, v in self.columns.items()} for law in laws}
-        return draw_sweep(self.swept, {law: Impacts(columns) for law, columns in each.items()})
+        return draw_sweep(self.swept, {law: self.at(self["law"] == law) for law in laws})
 
     def to_parquet(self, path: Path | str) -> None:
         """Write a Parquet file; refused without pyarrow."""

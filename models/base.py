@@ -159,11 +159,12 @@ class ContactLaw(ABC):
 
         Returned: force, shape (...) [N].
         """
-        par, row, d, shape = rows_of(self.parameters, pair, depth)
-        out = np.zeros(d.size)
-        map_loading(self.kernels.loading, par, row, d, out)
+        rows = rows_of(self.parameters, pair, depth)
+        out = np.zeros(rows.depth.size)
+        map_loading(self.kernels.loading, *rows[:3], out)
+        found = rows.shaped(out)
         self.warn_outside(pair, depth)
-        return out.reshape(shape)
+        return found
 
     def contact_radius(self, pair: Pairs, depth: Depths, peak: Depths | None = None) -> Array:
         """Contact radius, shape (...) [m]; `peak` defaults to `depth`, which means loading."""
@@ -175,10 +176,10 @@ class ContactLaw(ABC):
 
     def residual(self, pair: Pairs, peak: Depths) -> tuple[Array, Array]:
         """Permanent depth of sphere and flat after a largest approach of `peak` [m]."""
-        par, row, d, shape = rows_of(self.parameters, pair, peak)
-        sphere, flat = np.zeros(d.size), np.zeros(d.size)
-        map_residual(self.kernels.residual, par, row, d, sphere, flat)
-        return sphere.reshape(shape), flat.reshape(shape)
+        rows = rows_of(self.parameters, pair, peak)
+        sphere, flat = np.zeros(rows.depth.size), np.zeros(rows.depth.size)
+        map_residual(self.kernels.residual, *rows[:3], sphere, flat)
+        return rows.shaped(sphere), rows.shaped(flat)
 
     def hardness(self, pair: Pairs, depth: Depths) -> Array:
         """Mean pressure F/(pi a^2) on loading, shape (...) [Pa]; zero when open."""
@@ -222,14 +223,15 @@ class ContactLaw(ABC):
     def _branch(self, kernel: Any, pair: Pairs, depth: Depths, peak: Depths) -> Array:
         if isinstance(pair, Pair):
             depth, peak = np.broadcast_arrays(depth, peak)
-        par, row, d, shape = rows_of(self.parameters, pair, depth)
+        rows = rows_of(self.parameters, pair, depth)
         p = numbers(peak, key="peak", allowed="depths in m")
-        p = np.ascontiguousarray(np.broadcast_to(p, shape).ravel())
+        p = np.ascontiguousarray(np.broadcast_to(p, rows.shape).ravel())
         if not np.all(np.isfinite(p)):
             raise InputError("a peak is not a number", key="peak", allowed="finite depths in m")
-        out = np.zeros(d.size)
-        map_branch(kernel, par, row, d, np.maximum(p, d), out)
-        return out.reshape(shape)
+        out = np.zeros(rows.depth.size)
+        peaks = np.maximum(p, rows.depth)
+        map_branch(kernel, *rows[:3], peaks, out)
+        return rows._replace(depth=peaks).shaped(out)
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:  # noqa: B027
         """Warn with `DomainWarning` if the law knows its range in numbers; most do not."""

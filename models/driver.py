@@ -12,7 +12,7 @@ from numba import float64, njit, types
 from ..core.arrays import Array, Integers, numbers
 from ..core.errors import InputError
 from ..core.material import Pair
-from .kernel import BRANCH, LOADING, SPLIT, VECTOR
+from .kernel import BRANCH, LOADING, SPLIT, VECTOR, R
 
 Depths = npt.ArrayLike
 Pairs = Pair | Sequence[Pair]
@@ -62,6 +62,17 @@ class Rows(NamedTuple):
     row: Integers  # which of them, shape (n,)
     depth: Array  # shape (n,) [m]
     shape: tuple[int, ...]  # of the answer
+
+    def shaped(self, out: Array) -> Array:
+        """Return an answer (n,) in its shape; refuse a depth at which the law has no number."""
+        if not np.all(np.isfinite(out)):
+            first = int(np.argmin(np.isfinite(out)))
+            depth, radius = self.depth[first], self.table[self.row[first], R]
+            raise InputError(
+                f"{depth:g} m, {depth / radius:.2g} radii: the law has no number there",
+                key="depth", allowed=f"a part of the radius, {radius:g} m",
+            )  # fmt: skip
+        return out.reshape(self.shape)
 
 
 def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> Rows:

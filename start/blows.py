@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -25,6 +26,7 @@ from ..models import Laws, laws_named
 _KEYS = {"speed": "impact_speed_m_s", "mass": "mass_kg"}
 _ARRIVALS = ("impact_speed_m_s", "drop_height_m")
 _SETUPS = f"a pair, a set-up file, or {', '.join(KINDS)}"
+_NOT_SWEPT = ("setup", "law", "over")
 _NO_NUMBERS = ("striker", "support", "finite_tip")
 
 
@@ -98,7 +100,7 @@ def sweep(
     speed: ArrayLike | None = None, mass: ArrayLike | None = None,
     drop_height_m: ArrayLike | None = None, angle_deg: ArrayLike | None = None,
     friction: ArrayLike | None = None, approach_tangential_m_s: ArrayLike | None = None,
-    approach_spin_rad_s: ArrayLike | None = None,
+    approach_spin_rad_s: ArrayLike | None = None, over: Mapping[str, ArrayLike] | None = None,
 ) -> Impacts:  # fmt: skip
     """Simulate first blows at every combination of the values that are given.
 
@@ -109,6 +111,8 @@ def sweep(
     speed, mass, drop_height_m, angle_deg, friction, approach_tangential_m_s, approach_spin_rad_s
         One value or several, shape (n,) [m/s, kg, m, degrees, -, m/s, rad/s]; what is left out is
         the set-up's. Without any, the set-up's own table `[sweep]`.
+    over
+        Values of other numbers of a file by their keys: `{"target.thickness_m": [1e-3, 2e-3]}`.
 
     Returns
     -------
@@ -126,19 +130,22 @@ def sweep(
     >>> sweep("ball", law="hertz", speed=[1.0, 2.0])["restitution"].round(6).tolist()
     [1.0, 1.0]
     """
-    given = {k: v for k, v in locals().items() if k not in ("setup", "law") and v is not None}
+    given = {**locals(), **(over or {})}
+    given = {k: v for k, v in given.items() if k not in _NOT_SWEPT and v is not None}
+    if over and isinstance(setup, Pair):
+        raise InputError("with a pair", key="over", allowed="with a set-up file or template")
     values = {
         _KEYS.get(k, k): numbers(v, key=k, allowed="one number or several").ravel().tolist()
         for k, v in given.items()
     }
     first = {k: row[0] for k, row in values.items() if row and k in (*_ARRIVALS, "mass_kg")}
     chosen = _chosen(setup, first, sweep=values)
-    if not chosen.sweep.count:
+    if not chosen.varied:
         raise InputError("no values", key="sweep", allowed="speed=[1.0, 2.0], angle_deg=..., ...")
     laws = laws_named(law) or laws_named(chosen.laws)
     chosen.check_laws(laws)
     found, *others = (chosen.swept(one) for one in laws)
-    return replace(found.joined(*others), swept=chosen.sweep.swept)
+    return replace(found.joined(*others), swept=chosen.varied)
 
 
 def _stated(given: dict[str, Any]) -> dict[str, Any]:

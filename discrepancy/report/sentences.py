@@ -19,6 +19,7 @@ from .wording import (
     interval,
     joined,
     miss_sentences,
+    parameter_name,
     percent,
     quantity,
     title_of,
@@ -263,7 +264,7 @@ def limit_rows(v: Verdict) -> tuple[tuple[str, str, str], ...]:
     """Return what would have been seen, by which number, and from which value of it on."""
     of = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
     return tuple(
-        (title_of(k, v.titles), of[k].name, quantity(x, of[k].unit))
+        (title_of(k, v.titles), parameter_name(of[k].name, of[k].unit), quantity(x, of[k].unit))
         for k, x in v.limits.items() if k in of
     )  # fmt: skip
 
@@ -279,5 +280,6 @@ def own_parameters(v: Verdict) -> list[tuple[str, str, str]]:
         value = quantity(q["value"], q["unit"])
         if q["low"] <= least and q["high"] >= most:
             value = _UNTOLD
-        found.append((name, value, interval(q["low"], q["high"], q["unit"])))
+        told = parameter_name(name, q["unit"])
+        found.append((told, value, interval(q["low"], q["high"], q["unit"])))
     return found

@@ -90,6 +90,20 @@ def number_name(key: str, *, struck: str = "the flat") -> str:
     return f"{what} of {struck if place == ['target'] else place[-1]}"
 
 
+def parameter_name(label: str, unit: str) -> str:
+    """Return the name of a mechanism's number in words, without its unit.
+
+    Examples
+    --------
+    >>> parameter_name("support_stiffness_N_m", "N/m"), parameter_name("tilt.rate_exponent", "-")
+    ('support stiffness', 'rate exponent of tilt')
+    """
+    whose, _, name = label.rpartition(".")
+    ending = unit.replace("^", "").replace("/", "_").replace(" ", "_")
+    what = name.removesuffix(f"_{ending}").replace("_", " ")
+    return f"{what} of {whose}" if whose else what
+
+
 def quantity(value: float, unit: str) -> str:
     """Return a value of three figures with its unit, the unit prefixed where that is usual.
 

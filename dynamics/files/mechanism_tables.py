@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, ConfigDict, Field, create_model, model_validator
 
 from ...core.errors import InputError
+from ...core.inputs.added import MECHANISMS as ADDED
+from ...core.inputs.added import names_added
 from ...core.inputs.ranges import Within
-from ...core.inputs.toml_input import InputTable, table_in
+from ...core.inputs.toml_input import InputTable, parse_model, table_in
 from ...core.rig import Quantity, value_of
 from ..mechanisms import MECHANISMS
 from ..mechanisms.around import surroundings_of
 from ..mechanisms.asked import NONE_ASKED, Asked
 from ..mechanisms.base import Mechanism, Parameter, Surroundings, Values
+from ..mechanisms.own import own_mechanisms
 from .scenes import curves_in
 
 if TYPE_CHECKING:
@@ -33,6 +37,8 @@ class _GeneratedTable(InputTable):
 
 class MechanismTable(_GeneratedTable):
     """The numbers of one mechanism; `true` takes those that its source has for usual rigs."""
+
+    mechanism: ClassVar[Mechanism]
 
     @model_validator(mode="before")
     @classmethod
@@ -73,28 +79,53 @@ def _table(mechanism: Mechanism) -> type[MechanismTable]:
         )
         for p in mechanism.parameters
     }
-    return create_model(mechanism.name, __base__=MechanismTable, **fields)
+    made = create_model(mechanism.name, __base__=MechanismTable, **fields)
+    made.mechanism = mechanism
+    return made
 
 
-_FIELDS: dict[str, Any] = {
-    m.name: (_table(m) | None, Field(default=None, description=m.title)) for m in MECHANISMS
-}
+def _fields(mechanisms: Iterable[Mechanism]) -> dict[str, Any]:
+    return {
+        m.name: (_table(m) | None, Field(default=None, description=m.title)) for m in mechanisms
+    }
+
+
 if TYPE_CHECKING:
 
     class MechanismsTable(InputTable):
         """`[mechanisms]`: one table a mechanism, by the names of a verdict."""
 
 else:
-    MechanismsTable = create_model("mechanisms", __base__=_AllTables, **_FIELDS)
+    MechanismsTable = create_model("mechanisms", __base__=_AllTables, **_fields(MECHANISMS))
 
-_TABLES: dict[str, Any] = {
-    "mechanisms": MechanismsTable,
-    **{m.name: table_in(MechanismsTable.model_fields[m.name].annotation) for m in MECHANISMS},
-}
+
+@cache
+def _with_added(_names: tuple[str, ...]) -> Any:
+    return create_model("mechanisms", __base__=MechanismsTable, **_fields(own_mechanisms(())))
+
+
+def _tables(names: Iterable[str]) -> Any:
+    """Return the table of these mechanisms; other packages are loaded where a name is not ours."""
+    others = names_added(ADDED) if set(names) - MechanismsTable.model_fields.keys() else ()
+    return _with_added(others) if others else MechanismsTable
+
+
+def added_in(content: Mapping[str, Any], *, source: str) -> dict[str, Any]:
+    """Return the table of a file that names mechanisms of other packages; of no other."""
+    given = content.get("mechanisms")
+    kind = _tables(given) if isinstance(given, dict) else MechanismsTable
+    if kind is MechanismsTable:
+        return {}
+    model = create_model("file", __base__=InputTable, mechanisms=(kind, ...))
+    return dict(parse_model({"mechanisms": given}, model, source=source))
 
 
 def _made_again(name: str, values: dict[str, Any], given: set[str]) -> InputTable:
-    found: InputTable = _TABLES[name].model_construct(given, **values)
+    of_all = name == "mechanisms"
+    kind = _tables(values if of_all else [name])
+    if not of_all:
+        kind = table_in(kind.model_fields[name].annotation)
+    found: InputTable = kind.model_construct(given, **values)
     return found
 
 
@@ -111,16 +142,14 @@ _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
 """What else of a set-up says the same."""
 
 
-def asked_of(file: SetupFile) -> dict[str, InputTable]:
+def asked_of(file: SetupFile) -> dict[str, MechanismTable]:
     """Return the tables that a set-up holds, by mechanism."""
-    given = {m.name: getattr(file.mechanisms, m.name) for m in MECHANISMS}
-    return {name: table for name, table in given.items() if table is not None}
+    return {name: table for name, table in file.mechanisms if table is not None}
 
 
 def read_by(file: SetupFile) -> frozenset[str]:
     """Return the keys of the set-up that the mechanisms asked for take numbers from."""
-    names = asked_of(file)
-    return frozenset(key for m in MECHANISMS if m.name in names for key in m.reads)
+    return frozenset(k for table in asked_of(file).values() for k in table.mechanism.reads)
 
 
 def asked_in(file: SetupFile) -> Asked:
@@ -132,7 +161,7 @@ def asked_in(file: SetupFile) -> Asked:
         file, file.striker, temperature=value_of(file.impact.temperature_K),
         from_height=_falls(file), height_share=1.0,
     )  # fmt: skip
-    mechanisms = tuple(m for m in MECHANISMS if m.name in tables)
+    mechanisms = tuple(table.mechanism for table in tables.values())
     constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
     return Asked(mechanisms, constants, around)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -36,10 +36,10 @@ from ..mechanisms.asked import Asked
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
-from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
+from .mechanism_tables import MechanismsTable, added_in, asked_in, mistakes_of
 from .scenes import curves_in, scene_in
 from .second import SecondSphere, second_of
-from .sweep import Stated, SweepTable, combinations, mistakes_in, swept_scenes
+from .sweep import Stated, SweepTable, combinations, mistakes_in, rigs, swept_scenes
 from .taken import not_taken, taken_elsewhere
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
@@ -145,6 +145,10 @@ class Setup:
     numbers: RigNumbers
     pair: Pair | None = None
     """In place of the file's two bodies."""
+    keys: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    """Numbers of the file that `[sweep]` lets run through values."""
+    rigs: tuple[Setup, ...] = ()
+    """The same with each combination of these, the first slowest."""
 
     def __repr__(self) -> str:
         return f"Setup({self.name!r}, of {self.source}, by {', '.join(self.laws)})"
@@ -184,7 +188,7 @@ class Setup:
         """Return the same with these numbers of a mechanism, or without it."""
         table = None
         if numbers is not None:
-            kind = table_in(MechanismsTable.model_fields[name].annotation)
+            kind = table_in(type(self.file.mechanisms).model_fields[name].annotation)
             assert kind is not None
             stated: dict[str, Any] = {k: Quantity(value=x) for k, x in numbers.items()}
             table = kind.model_construct(**stated)
@@ -260,6 +264,11 @@ class Setup:
             ))  # fmt: skip
 
     @property
+    def varied(self) -> dict[str, tuple[float, ...]]:
+        """All that `[sweep]` lets run through values."""
+        return {**self.keys, **self.sweep.swept}
+
+    @property
     def stated(self) -> Stated:
         """How the striker arrives, as far as no sweep changes it."""
         impact, of = self.file.impact, self.numbers.of
@@ -268,6 +277,13 @@ class Setup:
 
     def swept(self, law: ContactLaw, *, change: Change = unchanged) -> Impacts:
         """Return the impacts of `[sweep]` by one law, what is done to the force changed."""
+        if self.rigs:
+            first, *others = (one.swept(law, change=change) for one in self.rigs)
+            grid = np.meshgrid(*self.keys.values(), indexing="ij")
+            each = {
+                k: np.repeat(x.ravel(), len(first)) for k, x in zip(self.keys, grid, strict=True)
+            }
+            return Impacts({**each, **first.joined(*others).columns})
         plain = self.plain(law)
         given = combinations(self.sweep, plain, stated=self.stated)
         found = impacts(plain, **given, settings=self.settings, asked=self.asked, change=change)
@@ -289,13 +305,26 @@ def read_setup(path: Path) -> Setup:
 
 def setup_of(content: dict[str, Any], *, source: str) -> Setup:
     """Check the content of a set-up file; `source` names it in errors, a line each."""
+    plain, keys, files = rigs(content, SetupFile.model_fields, source=source)
+    count = math.prod(len(values) for values in keys.values())
+    setup = _alone(plain, source=source, rigs=count)
+    try:
+        each = tuple(_alone(one, source=source) for one in files)
+    except InputError as wrong:
+        mistakes = wrong.errors if isinstance(wrong, InputErrors) else (wrong,)
+        raise InputErrors(tuple(x.at(source, f"sweep.{x.key}") for x in mistakes)) from None
+    return replace(setup, keys=keys, rigs=each)
+
+
+def _alone(content: dict[str, Any], *, source: str, rigs: int = 1) -> Setup:
+    """One rig, of `rigs` of its sweep."""
     known = tuple(taken_elsewhere(content, source=source))
     if known:
         raise InputErrors(known)
-    found = parse_model(content, SetupFile, source=source)
+    found = parse_model({**content, **added_in(content, source=source)}, SetupFile, source=source)
     errors = (
         *_mistakes(found, source), *not_taken(found, content, source=source),
-        *mistakes_in(found.sweep, source),
+        *mistakes_in(found.sweep, source, rigs=rigs),
     )  # fmt: skip
     if errors:
         raise InputErrors(errors)

@@ -1,9 +1,15 @@
-"""`[sweep]` of a set-up: conditions that run through values, every combination simulated."""
+"""`[sweep]` of a set-up: what runs through values, every combination simulated.
+
+Conditions of one rig are simulated together. Any other number of the file, by its key, makes a rig
+of its own for each value: a file that states it.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
@@ -19,6 +25,9 @@ from ..scene import Scene
 
 # limit: largest number of combinations [-]
 _COMBINATIONS = 10_000_000
+
+# limit: most rigs of a sweep [-]: each is read as a file, in 2 ms
+_RIGS = 10_000
 
 _ALLOWED = (
     'a list of numbers, or { from = ..., to = ..., count = ..., spacing = "linear" or "log" }'
@@ -104,12 +113,68 @@ class SweepTable(InputTable):
         return math.prod(len(v) for v in self.swept.values()) if self.swept else 0
 
 
-def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
+class _Keys(InputTable):
+    sweep: dict[str, _Values]
+
+
+def rigs(
+    content: dict[str, Any], tables: Container[str], *, source: str
+) -> tuple[dict[str, Any], dict[str, tuple[float, ...]], Iterator[dict[str, Any]]]:
+    """Return the file with the conditions of `[sweep]` alone, its other keys, and each rig's file.
+
+    Of every combination, the first key slowest; `tables` are those of a file.
+    """
+    given = content.get("sweep")
+    found = dict(_leaves(given)) if isinstance(given, dict) else {}
+    paths = {
+        key: path for path in found
+        if (key := ".".join(path)) not in SweepTable.model_fields and path[0] in tables
+    }  # fmt: skip
+    if not paths:
+        return content, {}, iter(())
+    kept = {".".join(path): x for path, x in found.items() if path not in paths.values()}
+    stated = {"sweep": {key: found[path] for key, path in paths.items()}}
+    keys = parse_model(stated, _Keys, source=source).sweep
+    return {**content, "sweep": kept}, keys, _files({**content, "sweep": kept}, paths, keys)
+
+
+def _files(
+    content: dict[str, Any], paths: Mapping[str, tuple[str, ...]],
+    keys: Mapping[str, tuple[float, ...]],
+) -> Iterator[dict[str, Any]]:  # fmt: skip
+    for values in product(*keys.values()):
+        for path, x in zip(paths.values(), values, strict=True):
+            # a whole number may be a count
+            content = with_value(content, path, int(x) if x.is_integer() else x)
+        yield content
+
+
+def _leaves(
+    table: Mapping[str, Any], before: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], Any]]:
+    for name, value in table.items():
+        path = (*before, name) if before else tuple(name.split("."))
+        if isinstance(value, dict) and value and value.keys().isdisjoint(("from", "to", "count")):
+            yield from _leaves(value, path)
+        else:
+            yield path, value
+
+
+def with_value(content: Any, path: tuple[str, ...], value: float) -> dict[str, Any]:
+    """Return a file with a number at its place, by its tables and key, in place of what it says."""
+    # a mechanism that is `true` is a table without numbers
+    table = content if isinstance(content, dict) else {}
+    name, *inner = path
+    return {**table, name: with_value(table.get(name), tuple(inner), value) if inner else value}
+
+
+def mistakes_in(sweep: SweepTable, source: str, *, rigs: int) -> list[InputError]:
     """What the single keys cannot show."""
-    both = sweep.impact_speed_m_s and sweep.drop_height_m
+    both, count = sweep.impact_speed_m_s and sweep.drop_height_m, max(sweep.count, 1) * rigs
     wrong = (
         (both, "both speed and height", "impact_speed_m_s or drop_height_m"),
-        (sweep.count > _COMBINATIONS, f"{sweep.count} combinations", f"up to {_COMBINATIONS}"),
+        (count > _COMBINATIONS, f"{count} combinations", f"up to {_COMBINATIONS}"),
+        (rigs > _RIGS, f"{rigs} combinations of numbers of the file", f"up to {_RIGS}"),
     )
     return [
         InputError(message, source=source, key="sweep", allowed=allowed)

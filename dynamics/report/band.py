@@ -9,7 +9,7 @@ as a diagnosis has them, and grow with the share of the work that the contact ke
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from types import SimpleNamespace
@@ -28,6 +28,7 @@ from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..batch import Change, unchanged
 from ..columns import Impacts
 from ..files.mechanism_tables import asked_of
+from ..files.sweep import with_value
 from ..integrate import Settings, strike
 from ..mechanisms.arithmetic import times
 from ..result import Impact
@@ -147,16 +148,21 @@ def compared(law: ContactLaw, pair: Pair, depth: float) -> bool:
     return need.regime == "elastic" or need.a_over_R <= reach
 
 
-def too_deep(law: ContactLaw, pair: Pair, depths: Sequence[float] | Array) -> Iterator[str]:
-    """Say how many of several blows, by their depths (n,) [m], go beyond."""
-    found = sorted(d for d in depths if math.isfinite(d))
-    if not found or compared(law, pair, found[-1]):
-        return
-    far = [d for d in found if not compared(law, pair, d)]
-    yield (
-        f"{law.name}: {len(far)} of {len(depths)} impacts go so deep, to {far[-1] / pair.R:.2g} "
-        "R, that no law was compared with finite elements there"
-    )
+def too_deep(
+    law: ContactLaw, blows: Iterable[tuple[Pair, Sequence[float] | Array]]
+) -> Iterator[str]:
+    """Say how many blows go beyond, by the depths (n,) [m] of each pair."""
+    count, far = 0, list[float]()
+    for pair, depths in blows:
+        found = [d for d in depths if math.isfinite(d)]
+        count += len(depths)
+        if found and not compared(law, pair, max(found)):
+            far += [d / pair.R for d in found if not compared(law, pair, d)]
+    if far:
+        yield (
+            f"{law.name}: {len(far)} of {count} impacts go so deep, to {max(far):.2g} R, that no "
+            "law was compared with finite elements there"
+        )
 
 
 def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impact:
@@ -193,7 +199,7 @@ def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup,
             values = [_moved(quantity, sign * share) for sign in (1.0, -1.0)]
             try:
                 up, down = (
-                    setup_of(_with(setup.content, path, value), source=setup.source)
+                    setup_of(with_value(setup.content, path, value), source=setup.source)
                     for value in values
                 )
                 for moved in (up, down):
@@ -236,12 +242,6 @@ def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
                 yield (*place, "radius_m" if other else key), value
         if isinstance(table, BodyTable) and table.Sy_Pa is None and table.strength is not None:
             yield (*place, "Sy_Pa"), table.strength
-
-
-def _with(content: Mapping[str, Any], path: tuple[str, ...], value: float) -> dict[str, Any]:
-    if len(path) == 1:
-        return {**content, path[0]: value}
-    return {**content, path[0]: _with(content.get(path[0], {}), path[1:], value)}
 
 
 def _sizes_of(setup: Setup, scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
@@ -344,10 +344,14 @@ def _of_law(
 def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
     """Return standard deviations along a sweep by one law, (n,) each, as those of a blow.
 
-    Without an impact that did end, there is none.
+    Where an impact did not end, there is none.
     """
     if not all(found["outcome"] == "completed"):
         return {}
+    if setup.rigs:
+        rows = np.split(np.arange(len(found)), len(setup.rigs))
+        stds = [swept_stds(s, law, found.at(r)) for s, r in zip(setup.rigs, rows, strict=True)]
+        return {name: np.concatenate([one[name] for one in stds]) for name in SWEPT}
     scene, peak = setup.scene(law), found["peak_depth_m"]
     each = (SimpleNamespace(**row, residual_flat_m=row[_CRATER]) for row in found.rows())
     sizes = np.stack([_sizes_of(setup, scene, one) for one in each], axis=-1)

@@ -34,7 +34,7 @@ CONDITIONS = {
     "approach_tangential_m_s": "tangential speed before [m/s]",
     "approach_spin_rad_s": "spin before [rad/s]",
 }  # fmt: skip
-"""What may be swept, in words."""
+"""The conditions that may be swept, in words; of any other number of a file its key."""
 
 
 def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[str, Any]]:
@@ -44,7 +44,8 @@ def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[st
     """
     breaks = cycle(("-", "--", ":", "-.", (0, (6, 2, 1, 2, 1, 2))))
     return {
-        law: {"color": f"C{k % 10}", "ls": dash}
+        # nine, for five dashes and ten colours make law 11 the first again
+        law: {"color": f"C{k % 9}", "ls": dash}
         | ({"lw": 1.0, "alpha": 0.5} if law in doubts else {})
         for k, (law, dash) in enumerate(zip(laws, breaks, strict=False))
     }
@@ -86,9 +87,9 @@ def draw_sweep(
                     swept[across], low, values + off, color=drawn.get_color(), alpha=0.2,
                     lw=float(alone), label="its standard deviation",
                 )  # fmt: skip
-        axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
+        axis.set(xlabel=CONDITIONS.get(across, across), ylabel=told.axis, xscale=scale)
         axis.grid(alpha=0.3)
-    fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)
+    fixed = ", ".join(f"{CONDITIONS.get(k, k)} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
     return made

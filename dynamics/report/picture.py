@@ -30,6 +30,10 @@ AGAINST_TIME = (
 """Column, axis, scale, and what counts as nothing at all [SI]."""
 
 
+# limit: time from which histories are in ms [s]; below, five digits of a tick would overlap
+_SHORT = 1e-4
+
+
 def picture(blow: Blow, *, exact: bool = False) -> Figure:
     """Return the rig, what the first law leaves that leaves anything, and the curves of all laws.
 
@@ -152,6 +156,8 @@ def _draw_curves(
 ) -> None:  # fmt: skip
     depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
     look = looks([law for law, _ in traces], doubts)
+    longest = max(trace.column("time_s").max() for _, trace in traces)
+    per_s, time = (1e3, "ms") if longest >= _SHORT else (1e6, "us")
     for law, trace in traces:
         style = look[law]
         label = f"{law}: {doubts[law]}" if law in doubts else law
@@ -160,10 +166,10 @@ def _draw_curves(
             **style,
         )  # fmt: skip
         for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
-            axis.plot(1e3 * trace.column("time_s"), scale * trace.column(name), **style)
+            axis.plot(per_s * trace.column("time_s"), scale * trace.column(name), **style)
     axes[0].set(xlabel=depth_label, ylabel=force_label)
     for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
-        axis.set(xlabel="time [ms]", ylabel=label)
+        axis.set(xlabel=f"time [{time}]", ylabel=label)
     for axis in axes:
         axis.grid(alpha=0.3)
     axes[0].legend(fontsize=7)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, critical_depth
+from dentscope.models.base import unwarned
 
 pytestmark = pytest.mark.filterwarnings("ignore::dentscope.models.base.DomainWarning")
 STEEL = Material(E=200e9, nu=0.3, Sy=503e6)
@@ -73,3 +74,14 @@ def test_depths_and_peaks_are_broadcast_and_a_peak_is_a_number():
     assert found == pytest.approx(np.array(each), rel=1e-14)
     with pytest.raises(InputError, match="a peak is not a number"):
         law.unloading(pair, depths, np.nan)
+
+
+def test_a_depth_at_which_a_law_has_no_number_is_refused():
+    iron = Material(E=200e9, nu=0.3, Sy=300e6)
+    law, pair = LAWS["fitted"], Pair(iron.with_(Sy=750e6), iron, 1e-2)
+    told = r"depth: 20 m, 2e\+03 radii: .* \(allowed: a part of the radius, 0.01 m\)"
+    for asked in (law.loading, law.residual, law.hardness):
+        with unwarned(), pytest.raises(InputError, match=told):
+            asked(pair, [1e-5, 20.0])
+    with pytest.raises(InputError, match=told):
+        law.unloading(pair, 1e-5, 20.0)

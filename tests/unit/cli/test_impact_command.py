@@ -69,6 +69,10 @@ def test_a_sweep_none_of_whose_blows_ends_says_so(tmp_path, capsys):
         ('mass_kg = { from = 0, to = 1, count = 3, spacing = "log" }', "both ends above 0"),
         ("impact_speed_m_s = [1]\ndrop_height_m = [1]", "both speed and height"),
         ("friction = []", "a list of numbers, or"),
+        ("target.thicknes_m = [1e-3]", "sweep.target.thicknes_m: unknown key; did you mean thick"),
+        ("target.nu = [0.3, 0.7]", "sweep.target.nu: 0.7 (allowed: 0 <= nu < 0.5)"),
+        ('strikers.ball.shape = ["rod"]', "sweep.strikers.ball.shape: ['rod'] (allowed: a list of"),
+        ("target.nu = { from = 0, to = 0.4, count = 10001 }", "(allowed: up to 10000)"),
     ],
 )
 def test_a_bad_sweep_is_one_line(sweep, message, tmp_path, errs):

@@ -1,5 +1,8 @@
 """What other packages add is found by its entry points; a package that fails is one line."""
 
+import pickle
+import tomllib
+from dataclasses import replace
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,9 +11,14 @@ import dentscope as ds
 import pytest
 from dentscope.core import InputError
 from dentscope.core.inputs import added
+from dentscope.core.inputs.templates import template
 from dentscope.core.inputs.toml_input import InputTable
+from dentscope.discrepancy import Mechanism, Parameter
+from dentscope.dynamics import strike
+from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.own import own_mechanisms, uncovered
+from dentscope.dynamics.report.band import band_of
 from dentscope.models import LAWS, law_named
 from dentscope.reduce import kinds
 
@@ -30,6 +38,19 @@ TOY_READER = SimpleNamespace(
 class Toy(type(MECHANISMS[0])):
     name = "toy"
     title = "a toy"
+
+
+class Brake(Mechanism):
+    """Takes energy before the touch: v^2 - 2 w."""
+
+    name = "brake"
+    title = "something brakes the striker"
+    equations = "v^2 -> v^2 - 2 w"
+    parameters = (Parameter("work_J_kg", "J/kg", 1e-3, 2.0, "log", 0.0, "a magnet"),)
+
+    def attach(self, scene, values, around):
+        speed = (scene.approach.speed**2 - 2.0 * values["work_J_kg"]) ** 0.5
+        return scene.with_(approach=replace(scene.approach, speed=speed))
 
 
 @pytest.fixture
@@ -73,6 +94,27 @@ def test_a_mechanism_of_another_package_is_tried_too(packages, importable):
     [note] = uncovered([own])
     assert "toy (a toy) is not of this package" in note
     assert "neither the calibration of the probabilities nor the blind proof" in note
+
+
+def test_a_mechanism_of_another_package_acts_in_an_impact(packages, importable):
+    packages(mechanisms=("brakes", f"{HERE}:Brake"))
+    content = tomllib.loads(template("ball")) | {"sweep": {}}
+    content["impact"] = {"impact_speed_m_s": 2.0, "laws": ["fitted"]}
+    brake = {"brake": {"work_J_kg": {"value": 1.5, "std": 0.1}}}
+    setup = pickle.loads(pickle.dumps(setup_of(content | {"mechanisms": brake}, source="")))
+    (law,) = map(law_named, setup.laws)
+    braked = strike(setup.scene(law))
+    slower = setup_of(content | {"impact": {"impact_speed_m_s": 1.0}}, source="").scene(law)
+    assert braked.peak_depth_m == pytest.approx(strike(slower).peak_depth_m, rel=1e-9)
+    assert band_of(setup, law).parts["mechanisms.brake.work_J_kg"]["peak_depth_m"] < 0.0
+    for numbers, told in (
+        (True, "mechanisms.brake.work_J_kg: missing"), ({"x": 1}, "mechanisms.brake.x: unknown"),
+        ({"work_J_kg": 99}, "0.001 to 2"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=told):
+            setup_of(content | {"mechanisms": {"brake": numbers}}, source="")
+    with pytest.raises(InputError, match=r"mechanisms.break: unknown key; did you mean brake"):
+        setup_of(content | {"mechanisms": {"break": True}}, source="")
 
 
 @pytest.mark.parametrize("given", [MECHANISMS[0], [Toy(), Toy()], [3], 3])

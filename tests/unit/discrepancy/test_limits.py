@@ -51,4 +51,4 @@ def test_a_limit_is_told_with_its_unit():
     mechanism = SimpleNamespace(name="m", parameters=(Parameter("p_m", "m", 0, 1, "log", 0, ""),))
     ranking = SimpleNamespace(screened=[SimpleNamespace(mechanism=mechanism)])
     told = SimpleNamespace(limits={"m": 1.5e-7}, titles={"m": "it yields"}, ranking=ranking)
-    assert limit_rows(told) == (("it yields", "p_m", "150 nm"),)
+    assert limit_rows(told) == (("it yields", "p", "150 nm"),)

@@ -275,7 +275,7 @@ def test_what_else_of_its_family_does_as_a_wrong_strength_is_told(share: float, 
 def test_an_interval_as_wide_as_the_range_gives_no_value(most: float, value: str) -> None:
     """Four fifths of 1 mm to 1 m, a logarithm, are 2 mm to 0.501 m."""
     [drag] = (m for m in MECHANISMS if m.name == "air-drag")
-    grid = SimpleNamespace(labels=("s",), axes=(SimpleNamespace(parameter=drag.parameters[1]),))
-    found = {"s": {"value": 0.022, "low": 1.9e-3, "high": most, "unit": "m"}}
+    grid = SimpleNamespace(labels=("s_m",), axes=(SimpleNamespace(parameter=drag.parameters[1]),))
+    found = {"s_m": {"value": 0.022, "low": 1.9e-3, "high": most, "unit": "m"}}
     v: Any = SimpleNamespace(best=SimpleNamespace(grid=grid), parameters=found)
     assert own_parameters(v) == [("s", value, f"1.9 mm to {1e3 * most:g} mm")]

@@ -42,6 +42,8 @@ def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
     fast = impact("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
     assert fast.doubts == {"fitted": "a/R of about 1.1 is beyond 0.6"}
     curves = made.axes[2:]  # below the rig and the dent
+    assert curves[1].get_xlabel() == "time [us]"  # 0.03 ms: no tick has more than three digits
+    assert curves[1].get_xlim()[1] > 20.0
     for axis in curves:
         ours, theirs = axis.get_lines()
         assert (ours.get_alpha(), theirs.get_alpha()) == (None, 0.5)
@@ -49,3 +51,5 @@ def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
         style = [(line.get_color(), line.get_linestyle()) for line in (ours, theirs)]
         assert style == [(x["color"], x["ls"]) for x in draw.looks(["fitted", "hertz"]).values()]
     assert curves[0].get_lines()[1].get_label() == "hertz: elastic only"
+    every = [(look["color"], look["ls"]) for look in draw.looks(map(str, range(45))).values()]
+    assert len(set(every)) == 45

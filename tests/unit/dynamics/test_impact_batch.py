@@ -22,6 +22,7 @@ from dentscope.dynamics import (
 from dentscope.dynamics.batch import QUICK
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.files.sweep import swept_scenes
+from dentscope.dynamics.report.band import swept_stds
 from dentscope.models import LAWS
 from made_scenes import ROD, STEEL, on_iron
 
@@ -204,6 +205,42 @@ def test_a_row_of_a_sweep_arrives_as_the_impact_alone(striker, stated, swept):
         assert getattr(got, name) == pytest.approx(getattr(wanted, name), rel=1e-12, abs=1e-12)
     assert row.striker.mass == pytest.approx(alone.striker.mass, rel=1e-12)
     assert row.striker.inertia == pytest.approx(alone.striker.inertia, rel=1e-12)
+
+
+def test_any_number_of_the_file_is_swept_by_its_key():
+    law, radii, moduli = LAWS["hertz"], [0.005, 0.01], [2.0e11, 1.0e11]
+    content = _set_up("ball", {"impact_speed_m_s": 1.0}).content | {"sweep": {
+        "strikers": {"one": {"tip_radius_m": radii}}, "target.E_Pa": moduli,
+        "gravity_m_s2": [0.0], "impact_speed_m_s": [1.0, 32.0],
+    }}  # fmt: skip
+    setup = setup_of(content, source="one.toml")
+    found = setup.swept(law)
+    assert next(iter(setup.varied)) == "strikers.one.tip_radius_m"
+    assert found["target.E_Pa"].tolist() == 2 * [2.0e11, 2.0e11, 1.0e11, 1.0e11]
+    assert found["mass_kg"][[0, 4]] == pytest.approx(
+        [7800 * math.pi / 6 * d**3 for d in (0.01, 0.02)]
+    )
+    # Hertz: T = 2.943 (15 m / (16 E* R^1/2))^2/5 v^-1/5, with the mass of a solid ball
+    T = found["contact_time_s"].reshape(2, 2, 2)
+    assert T[1] / T[0] == pytest.approx(np.full((2, 2), 2.0), rel=1e-6)
+    assert T[:, 1] / T[:, 0] == pytest.approx(np.full((2, 2), 1.5**0.4), rel=1e-6)
+    assert T[..., 1] / T[..., 0] == pytest.approx(np.full((2, 2), 0.5), rel=1e-6)
+    stds = swept_stds(setup, LAWS["fitted"], setup.swept(LAWS["fitted"]))["restitution"]
+    alone = setup.rigs[3]
+    assert stds[6:] == pytest.approx(
+        swept_stds(alone, LAWS["fitted"], alone.swept(LAWS["fitted"]))["restitution"], rel=1e-12
+    )
+    with pytest.raises(InputError, match="up to 10000000"):
+        setup_of(
+            content
+            | {
+                "sweep": {
+                    "target.nu": {"from": 0, "to": 0.4, "count": 9999},
+                    "friction": {"from": 0, "to": 1, "count": 9999},
+                }
+            },
+            source="",
+        )
 
 
 def test_a_swept_mass_carries_modes_of_its_own():

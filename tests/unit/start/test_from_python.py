@@ -134,6 +134,8 @@ def test_a_pair_is_struck_at_one_speed_or_several():
         ds.impact(hardens, speed=2.0, law="fitted")
     with pytest.raises(InputError, match="mass: missing"):
         ds.impact(ds.Pair(soft, hard, 5e-3), speed=1.0)
+    with pytest.raises(InputError, match="over: with a pair"):
+        ds.sweep(pair, over={"target.nu": [0.2, 0.3]})
     for wrong in ([], [1.0, math.nan], "2", -1.0, 0.0):
         for call in (ds.impact, ds.sweep):
             with pytest.raises(InputError):
@@ -239,6 +241,9 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
         "seed": lambda: ds.diagnose("leeb-steel-800hv", seed=-1),
         "seed: 1.9": lambda: ds.diagnose("leeb-steel-800hv", seed=1.9),
         "law: 3": lambda: ds.compare_laws(pair, law=["hertz", 3]),
+        "law: hertz: .*would pass for phys": lambda: ds.diagnose(
+            "leeb-steel-800hv", law=ds.LAWS["hertz"]
+        ),
         "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
         "pair: Material": lambda: fitted.loading(steel, 1e-6),
         "pair: 3": lambda: fitted.residual(3, 1e-6),
@@ -291,7 +296,7 @@ def test_signatures_say_what_is_taken_and_one_thing_is_returned():
     # every key of [impact] and of [sweep] is a keyword, speed and mass by their short names
     names = {"impact_speed_m_s": "speed", "mass_kg": "mass"}
     for call, table in ((ds.impact, ImpactTable), (ds.sweep, SweepTable)):
-        taken = set(inspect.signature(call).parameters) - {"setup", "law"}
+        taken = set(inspect.signature(call).parameters) - {"setup", "law", "over"}
         keys = {names.get(k, k) for k in table.model_fields} - {"laws"}
         assert keys - taken == set()
         assert taken - keys == ({"mass", "friction"} if call is ds.impact else set())
