@@ -10,6 +10,7 @@
     ds.compare_laws("case.toml")               the same by every contact law, and which to use
     ds.material("aluminium-6061-t6")           a metal of the table of `dentscope materials`
     ds.LAWS                                    every contact law, as a table
+    ds.InputError                              what a wrong argument or file raises, in one line
 
 The stages, in the order in which a result passes through them; each is loaded when it is used:
 
@@ -39,7 +40,8 @@ _STAGES = (
 )  # fmt: skip
 
 __all__ = [
-    "LAWS", "Material", "Pair", "case", "compare_laws", "diagnose", "impact", "material", "sweep",
+    "LAWS", "InputError", "Material", "Pair", "case", "compare_laws", "diagnose", "impact",
+    "material", "sweep",
 ]  # fmt: skip
 
 keep_compiled_code()
@@ -55,6 +57,7 @@ if TYPE_CHECKING:  # a function __getattr__ would hide every misspelt name
     from dentscope import recordings as recordings
     from dentscope import reduce as reduce
     from dentscope import start as start
+    from dentscope.core import InputError
     from dentscope.models import LAWS
     from dentscope.start import (
         Material,
@@ -73,7 +76,7 @@ else:
         if name in _STAGES:
             return import_module(f"dentscope.{name}")
         if name in __all__:
-            stage = "models" if name == "LAWS" else "start"
+            stage = {"LAWS": "models", "InputError": "core"}.get(name, "start")
             return getattr(import_module(f"dentscope.{stage}"), name)
         raise AttributeError(f"module 'dentscope' has no attribute {name!r}")
 
