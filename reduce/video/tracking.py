@@ -134,7 +134,9 @@ def track_ball(
     # what lies below all places of the ball is a flat, and no ground to fit an edge against
     flat = int(max((b.y + b.radius for _, b in sharp), default=0.0)) - _ABOVE_FLAT
     edges = [
-        (n, b if b.y + b.radius < flat - 8.0 else _ball_edge(frames[n, :flat] * 1.0, b, levels[0]))
+        (n, b)
+        if b.y + b.radius < flat - 8.0
+        else (n, _ball_edge(frames[n, :flat].astype(np.float64), b, levels[0]))
         for n, b in sharp
     ]
     sharp = [(n, b) for n, b in edges if b is not None]
