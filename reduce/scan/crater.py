@@ -110,8 +110,7 @@ def reduce_scan(
 
 def _check_whole(found: Levelled, length: Measured, width: Measured, source: str) -> None:
     """Refuse a lowest part that surrounds a hill, or of which no wall leads up within the scan."""
-    around = float(ndimage.binary_fill_holes(found.crater).sum())
-    hill = around > _FILLED * float(found.crater.sum())
+    hill = bool(ndimage.binary_fill_holes(found.crater).sum() > _FILLED * found.crater.sum())
     inner = float(found.crater[1:-1, 1:-1].sum())
     cut = inner < found.crater.sum() and math.isnan(length.value) and math.isnan(width.value)
     if hill or cut:
