@@ -16,9 +16,6 @@ from ..images.edge_fit import BallEdge, RodPose, RodShape, fit_ball, fit_rod
 from ..images.silhouette import ball_by_light, body_mask, rod_guess
 from ..rules import RULES
 
-# limit: rows above a flat that its light is blurred into [pixel]
-_ABOVE_FLAT = 3
-
 
 def track_rod(
     frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float], source: str
@@ -131,23 +128,16 @@ def track_ball(
         )  # fmt: skip
     edges = [(n, _ball_edge(frames[n].astype(np.float64), b, levels[0])) for n, b in light]
     sharp = [(n, b) for n, b in edges if b is not None]
-    # what lies below all places of the ball is a flat, and no ground to fit an edge against
-    flat = int(max((b.y + b.radius for _, b in sharp), default=0.0)) - _ABOVE_FLAT
-    edges = [
-        (n, b)
-        if b.y + b.radius < flat - 8.0
-        else (n, _ball_edge(frames[n, :flat].astype(np.float64), b, levels[0]))
-        for n, b in sharp
-    ]
-    sharp = [(n, b) for n, b in edges if b is not None]
     # one kind of position for the whole clip: the two differ by a constant under uneven light
     found = sharp if len(sharp) > RULES.mostly_found * len(light) else light
     return {
-        "frame": np.array([n for n, _ in found]), "lean": np.zeros(len(found)),
-        "column": np.array([b.x for _, b in found]), "row": np.array([b.y for _, b in found]),
+        "frame": np.array([n for n, _ in found]),
+        "column": np.array([b.x for _, b in found]),
+        "row": np.array([b.y for _, b in found]),
         "row_std": np.array([b.row_std for _, b in found]),
+        "lean": np.zeros(len(found)),
         "radius": np.array([b.radius for _, b in found]),
-    }  # fmt: skip
+    }
 
 
 def _ball_edge(grey: Array, ball: BallEdge, dark: float) -> BallEdge | None:
