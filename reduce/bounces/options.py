@@ -51,7 +51,7 @@ class BounceOptions(BallOptions):
         0.0, ge=0.0, description="duration of a contact, which is not flight"
     )
     diameter_m: float | None = Field(
-        None, gt=0.0, description="of the ball; with mass_kg the drag of the air is taken off"
+        None, gt=0.0, le=1.0, description="of the ball; with mass_kg drag of the air is taken off"
     )
 
     @property

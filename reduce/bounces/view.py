@@ -70,14 +70,10 @@ class Stage:
         z, grown, steep = self._bends(view, y, time)
         bent = 1.0 + view.bend * z + view.bow * z**2
         late = (time - self.start) / self.span
-        shared = [
-            by_fall * steep,
-            by_drag * steep,
-            y * z * grown,
-            y * z**2 * grown,
-            y * bent * late,
-        ]
-        return np.column_stack([*shared, self.launch_slopes(view, launch, reference, time)])
+        return np.column_stack([
+            by_fall * steep, by_drag * steep, y * z * grown, y * z**2 * grown, y * bent * late,
+            self.launch_slopes(view, launch, reference, time),
+        ])  # fmt: skip
 
     def launch_slopes(self, view: View, launch: Launch, reference: float, time: Array) -> Array:
         """Return the derivatives of the seen heights by the launch, (n, 2)."""

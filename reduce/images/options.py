@@ -14,10 +14,10 @@ from .picture_file import crop_window
 class PictureOptions(InputTable):
     """How a picture is read, and how large its pixels are."""
 
-    pixel_m: float | None = Field(None, gt=0.0, description="size of a pixel")
+    pixel_m: float | None = Field(None, gt=0.0, le=0.01, description="size of a pixel")
     pixel_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
     diameter_m: float | None = Field(
-        None, gt=0.0, description="of the striker, from which the size of a pixel follows"
+        None, gt=0.0, le=1.0, description="of the striker, from which the size of a pixel follows"
     )
     diameter_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
     channel: Literal["grey", "red", "green", "blue"] = Field("grey", description="colour to use")

@@ -66,8 +66,9 @@ def _motive(rows: list[list[str]], source: str) -> Export:
     top = next((k for k, row in enumerate(rows) if row[:1] == ["Frame"]), None)
     if top is None:
         raise _none(source, "a Motive export of tracks")
-    by_name = {row[1]: row for row in rows[1:top] if len(row) > 1 and row[1]}
-    kinds, names = by_name.get("Type", []), by_name.get("Name", [])
+    # some versions name these rows in their second cell, some do not
+    typed = (k for k, row in enumerate(rows[:top]) if {"Marker", "Rigid Body"} & {*row[2:]})
+    kinds, names, *_ = rows[next(typed, top - 1) :]
     what = next((row for row in rows[1:top] if "Position" in row), [])
     places: dict[str, dict[str, list[int]]] = {"Marker": {}, "Rigid Body": {}}
     for k, (kind, name, one) in enumerate(zip(kinds, names, what, strict=False)):

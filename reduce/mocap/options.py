@@ -24,7 +24,7 @@ class MocapOptions(InputTable):
     shape: Literal["rod", "sphere", "body"] = Field(
         "rod", description="of the striker; a body touches with its lowest marker"
     )
-    tip_radius_m: float | None = Field(None, gt=0.0, description="of the tip or the sphere")
+    tip_radius_m: float | None = Field(None, gt=0.0, le=1.0, description="of the tip or the sphere")
     length_m: float | None = Field(
         None, gt=0.0, description="of a rod between the centres of its tip spheres"
     )

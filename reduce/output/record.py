@@ -26,13 +26,10 @@ def write_record(
     """Write NAME-KIND.json (file, checksum, options, values, notes) and the picture; both paths."""
     record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
     content = {
-        "kind": kind,
-        **_origin(reduced.source),
+        "kind": kind, **_origin(reduced.source), "trials": trials or [],
         "options": {k: v for k, v in options.items() if v not in (None, "")},
-        "trials": trials or [],
-        "values": {k: _plain(v) for k, v in reduced.values.items()},
-        "notes": list(reduced.notes),
-    }
+        "values": {k: _plain(v) for k, v in reduced.values.items()}, "notes": list(reduced.notes),
+    }  # fmt: skip
     write_file(record, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
     reduced.draw(picture)
     return record, picture

@@ -32,7 +32,7 @@ class PressOptions(TimeWindow):
     load_std_N: float = Field(
         0.0, ge=0.0, description="standard deviation of the load cell at the largest load"
     )
-    tip_radius_m: float | None = Field(None, gt=0.0, description="of the ball, for a new set")
+    tip_radius_m: float | None = Field(None, gt=0, le=1, description="of the ball, of a new set")
 
 
 Options = PressOptions

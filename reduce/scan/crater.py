@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from ...core.arrays import Array
 from ...core.errors import InputError
@@ -14,8 +15,12 @@ from ..measured import UNITY, ZERO, Measured, Trial
 from ..rules import RULES
 from .bottom import find_bottom
 from .file import Scan
-from .level import Levelled, levelled
+from .level import Levelled, filled, levelled
 from .walls import Section, opening, pile_up, section, section_covariance, without_band
+
+# limit: area within the outline of a crater at most, in that below the surface [-]; a ring around
+# a hill, as of heights that grow downwards, has 1.7
+_FILLED = 1.2
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,7 @@ def reduce_scan(
     across = section(shown, bottom.place, direction + 0.5 * math.pi, half_width)
     covariance = section_covariance(shown, half_width)
     length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
+    _check_whole(shown, length, width, scan.source)
     length, width = without_band(length, width, half_width)
     depth = _without_blur(bottom.depth, bottom.laplacian, blur)
     if not depth.std < RULES.own_error * depth.value:
@@ -90,7 +96,7 @@ def reduce_scan(
         )  # fmt: skip
     cell = float(np.prod(scan.step))
     volume = Measured(
-        -float(np.nansum(shown.z[shown.crater])) * cell,
+        -float(np.sum(filled(shown.z)[shown.crater])) * cell,
         bottom.depth.std * float(shown.crater.sum()) * cell,
     )
     return Crater(
@@ -100,6 +106,18 @@ def reduce_scan(
         surface=shown, along=along, across=across,
         notes=_notes(scan, shown, width, height_scale),
     )  # fmt: skip
+
+
+def _check_whole(found: Levelled, length: Measured, width: Measured, source: str) -> None:
+    """Refuse a lowest part that surrounds a hill, or of which no wall leads up within the scan."""
+    hill = bool(ndimage.binary_fill_holes(found.crater).sum() > _FILLED * found.crater.sum())
+    inner = float(found.crater[1:-1, 1:-1].sum())
+    cut = inner < found.crater.sum() and math.isnan(length.value) and math.isnan(width.value)
+    if hill or cut:
+        raise Refused(
+            "the lowest part surrounds a hill" if hill else "the lowest part leaves the scan",
+            source=source, allowed="a crater that is whole in the scan, heights that grow upwards",
+        )  # fmt: skip
 
 
 def _shape(found: Levelled) -> tuple[float, float]:

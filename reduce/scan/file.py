@@ -55,7 +55,7 @@ def read_scan(
     and the distance of neighbouring points [m] are for files that name none or a wrong one. A line,
     and a file that does not say them, are refused.
     """
-    found = _text(path) if path.suffix.lower() == ".csv" else _known_format(path, step)
+    found = _text(path) if path.suffix.lower() == ".csv" else _known_format(path)
     heights = np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan)
     if heights.size < _SCAN_POINTS or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
@@ -90,14 +90,13 @@ def _refuse_far(step: float, path: Path) -> None:
     """Refuse points so far apart that the unit must be wrong."""
     if step > _SCAN_STEP:
         raise InputError(
-            f"its points are {step:.3g} m apart, {step / _SCAN_STEP:.0f} times as far as in a "
-            "scan",
+            f"its points are {step:.3g} m apart, {step / _SCAN_STEP:.0f} times as far as in a scan",
             source=str(path),
             allowed=f"--unit or --step-m, where neighbours are {_SCAN_STEP:g} m apart or less",
         )  # fmt: skip
 
 
-def _known_format(path: Path, step: float | None) -> _Raw:
+def _known_format(path: Path) -> _Raw:
     """Read a file with SurfaceTopography."""
     try:
         with warnings.catch_warnings():
@@ -109,22 +108,28 @@ def _known_format(path: Path, step: float | None) -> _Raw:
         with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             warnings.simplefilter("ignore")  # its readers print what they stumble over, in turn
             channel = open_topography(str(path)).default_channel
-            sizes = {}
-            if channel.physical_sizes is None and step is not None:
-                sizes = {"physical_sizes": tuple(float(n) for n in channel.nb_grid_pts)}
+            silent = channel.physical_sizes is None
+            sizes = {"physical_sizes": tuple(map(float, channel.nb_grid_pts))} if silent else {}
             _check_claim(channel.nb_grid_pts, path)
             found = channel.topography(**sizes)
             if found.dim == 1:
                 raise _a_line(path)
             z = np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan)
-            return _Raw(z, step=np.array(found.physical_sizes) / z.shape, unit=found.unit)
+            if min(z.shape) < 4:  # x, y and z of points, some of the grid left out
+                return _text(path)
+            step = None if silent else np.array(found.physical_sizes) / z.shape
+            return _Raw(z, step=step, unit=found.unit)
     except InputError:
         raise
     except Exception as error:  # each of its readers raises its own kind
+        if path.suffix.lower() == ".xyz":
+            return _text(path)
+        why = first_line(error)
+        told = "" if isinstance(error, LookupError) or why.endswith(": )") else f" ({why})"
         raise InputError(
-            f"cannot be read as a surface scan ({first_line(error)})", source=str(path),
-            allowed="a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, mnt, xyz ...), "
-            "or --step-m where it does not say the distance of its points",
+            f"cannot be read as a surface scan{told}", source=str(path),
+            allowed="a whole file of a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, "
+            "mnt, xyz ...), or a grid as CSV",
         ) from None  # fmt: skip
 
 
@@ -203,7 +208,7 @@ def _regular(points: Array, path: Path) -> _Raw:
 
 
 def _factor(unit: str | None, path: Path) -> float:
-    return metres(unit or "", source=str(path), allowed=LENGTH)
+    return metres(unit or "", source=str(path), allowed=LENGTH if unit else ("m", "mm", "um", "nm"))
 
 
 def _a_line(path: Path) -> InputError:

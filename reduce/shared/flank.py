@@ -37,10 +37,10 @@ def meets_zero(
             return np.asarray(np.maximum(a * late * (1.0 - b * late**2), 0.0) ** power)
 
         slope, level = np.polyfit(s, force ** (1.0 / power), 1)
-        first = (float(np.clip(-level / slope, -2.0, 0.5)), slope) if slope > 0.0 else (-0.5, 1.0)
+        first = (float(np.clip(-level / slope, -9.0, 0.5)), slope) if slope > 0.0 else (-0.5, 1.0)
         fit = least_squares(
             lambda c, m=model: m(s, *c) - force, (*first, 0.0),
-            bounds=((-3.0, 0.0, -0.1), (0.9, np.inf, 0.3)), x_scale="jac", max_nfev=50,
+            bounds=((-10.0, 0.0, -0.1), (0.9, np.inf, 0.3)), x_scale="jac", max_nfev=50,
         )  # fmt: skip
         sigma = max(float(np.std(fit.fun)) * math.sqrt(s.size / (s.size - 3.0)), 1e-6)
         ends.append(float(fit.x[0]))

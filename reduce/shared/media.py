@@ -30,6 +30,6 @@ def container_of(path: Path, kind: str, allowed: str) -> Iterator[Any]:
             av.open(file, container_options={"protocol_whitelist": "none"}) as container,
         ):
             yield container
-    except av.FFmpegError as error:
+    except (av.FFmpegError, OSError) as error:  # of an empty file, the latter
         text = getattr(error, "strerror", None) or type(error).__name__
         raise InputError(f"cannot be decoded ({text})", source=str(path), allowed=allowed) from None

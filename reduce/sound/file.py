@@ -70,16 +70,13 @@ def _wave(path: Path) -> tuple[Array, float]:
         samples = (samples - 128.0) / 128.0
     elif found.dtype.kind == "i":
         samples /= float(np.iinfo(found.dtype).max) + 1.0
-    return samples.reshape(found.shape[0], -1).mean(axis=1), float(rate)
+    return samples if samples.ndim == 1 else samples.mean(axis=1), float(rate)
 
 
 def _check_length(count: int, rate: float, path: Path) -> None:
     if count > _SOUND_S * rate:
-        raise InputError(
-            f"more than {_SOUND_S / 60.0:g} minutes",
-            source=str(path),
-            allowed="a shorter recording",
-        )
+        said = f"more than {_SOUND_S / 60.0:g} minutes"
+        raise InputError(said, source=str(path), allowed="a shorter recording")
 
 
 def _decoded(path: Path) -> tuple[Array, float]:

@@ -18,7 +18,7 @@ _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
 }  # fmt: skip
 _CAPITALS = {unit.upper(): unit for unit in sorted(_KNOWN_UNITS, reverse=True)}
 _BRACKETED = re.compile(r"[\[(<]\s*([^\])>]+?)\s*[\])>]")
-_AT_END = re.compile(r"(\S+?)\s*(?:[/,]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")
+_AT_END = re.compile(r"(\S+?)\s*(?:[/,\n]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")
 _WITHIN = re.compile(r"\s*[,;:=]\s*|\s+(?=[\d.+-])|(?<=\d)\s+")
 """Between name, number and unit of a header line that is one cell."""
 WORDS = {
@@ -74,8 +74,8 @@ def unit_in(name: str) -> str:
 
     Examples
     --------
-    >>> [unit_in(n) for n in ("x (mm)", "F / N", "F in kN", "t_ms", "Time [s] (raw)", "Force")]
-    ['mm', 'N', 'kN', 'ms', 's', '']
+    >>> [unit_in(n) for n in ("x (mm)", "F / N", "F in kN", "t_ms", "a_m_s2", "T [s] (raw)", "F")]
+    ['mm', 'N', 'kN', 'ms', 'm/s2', 's', '']
     """
     bracketed = [in_short(found) for found in _BRACKETED.findall(name)]
     if bracketed:
@@ -84,7 +84,11 @@ def unit_in(name: str) -> str:
     found = _AT_END.search(name)
     if found is not None and in_short(found.group(2)) in _KNOWN_UNITS:
         return "" if found.group(1) in _KNOWN_UNITS else in_short(found.group(2))  # a speed, m/s
-    return in_short(name.rsplit("_", 1)[-1]) if "_" in name else ""
+    parts = name.split("_")
+    pair = in_short("/".join(parts[-2:]))  # a_m_s2, as a set names it
+    if len(parts) > 2 and pair in _KNOWN_UNITS:
+        return pair
+    return in_short(parts[-1]) if len(parts) > 1 else ""
 
 
 def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:

@@ -20,7 +20,8 @@ _LEEB_SPEED = 2.05
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return a trial for each number, from 0 to 1000, of a column and of all after it."""
-    first, speed = table.find(options.value, key="value"), options.approach_speed_m_s
+    value = options.value if len(table.names) > 1 else "1"
+    first, speed = table.find(value, key="value"), options.approach_speed_m_s
     approach = Measured(speed or _LEEB_SPEED, 0.0)
     trials, wrong = [], []
     for row, numbers in enumerate(table.values[:, first:], start=1):

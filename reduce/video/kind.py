@@ -24,12 +24,9 @@ def reduce(path: Path, options: VideoOptions) -> Reduced:
         crop=crop_window(options.crop),
     )  # fmt: skip
     optics = Optics(
-        rate=options.frame_rate_hz,
-        scale=options.pixel,
-        size=options.diameter,
-        ball=options.ball_of(options.diameter_m),
-        line_time=options.line_time_s,
-    )
+        rate=options.frame_rate_hz, scale=options.pixel, size=options.diameter,
+        ball=options.ball_of(options.diameter_m), line_time=options.line_time_s,
+    )  # fmt: skip
     found = reduce_video(
         clip, optics, shape=options.shape, striker_is=options.striker_is,
         background=options.background,

@@ -165,13 +165,9 @@ def _contacts(
     if stated is None and optics.size is not None:
         stated = optics.size.over(half.scaled(2.0))
     path = Track(
-        time,
-        -track["row"],
-        floor=RULES.position_floor,
-        trend=RULES.position_trend,
-        near=near,
+        time, -track["row"], floor=RULES.position_floor, trend=RULES.position_trend, near=near,
         unsure=RULES.mirror_move,
-    )
+    )  # fmt: skip
     return told_bounces(
         path, optics.ball, metres=stated, source=source,
         allowed="a clip that shows the striker fall, touch and rise",
@@ -181,10 +177,7 @@ def _contacts(
 def _timed(clip: Clip, optics: Optics) -> tuple[Optics, list[str]]:
     """Take the container's time stamps where it was written as it was filmed, and unevenly."""
     notes, rate = [], optics.rate
-    if (
-        math.isfinite(clip.container_rate)
-        and abs(clip.container_rate / rate - 1.0) > RULES.same_rate
-    ):
+    if abs(clip.container_rate / rate - 1.0) > RULES.same_rate:  # not so for nan, of pictures
         notes.append(
             f"the container plays at {clip.container_rate:.6g} frames/s; {rate:g} was used"
         )

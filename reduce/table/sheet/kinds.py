@@ -77,7 +77,8 @@ def named(header: str) -> str:
         return ""
     text = bare(text).strip(" .:,/")
     # Drop (cm) is a height, Drop alone a number; Rebound 2 (mm) is one of several, a speed in m/s
-    unit = said_unit(header)
+    ended = [in_short(found[2]) for found in ends if quantity_of(in_short(found[2])) == "length"]
+    unit = said_unit(header) or "".join(ended[:1])
     back = words.has(words.REBOUND, text) and quantity_of(unit)
     if back == "speed":
         return f"{text} speed"

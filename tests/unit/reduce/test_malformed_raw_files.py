@@ -93,6 +93,10 @@ CASES = {
     "sound: past the end": ("sound", "wav", ["--first-s", "100"], "first"),
     "sound: silence": ("sound", "zeros", [], "silence"),
     "video: text": ("video", TIMES, ["--frame-rate-hz", "1000"], "cannot be decoded"),
+    "video: empty": ("video", b"", ["--frame-rate-hz", "9"], "a.csv: cannot be decoded"),
+    "video: a pixel in mm": (
+        "video", TIMES, ["--frame-rate-hz", "9", "--pixel-m", "0.2"], "less than or equal to 0.01"
+    ),
     "video: no rate": ("video", TIMES, [], "frame-rate-hz"),
     "video: two scales": (
         "video", TIMES, ["--frame-rate-hz", "9", "--pixel-m", "1e-4", "--diameter-m", "0.1"],
@@ -106,6 +110,7 @@ CASES = {
         "mocap", TRACK, ["--shape", "sphere", "--tip-radius-m", "0.01"], "a.csv"
     ),
     "scan: three heights": ("scan", "1,2,3\n4,5,6\n7,8,9\n", [], "heights"),
+    "scan: no unit": ("scan", "1,2,3,4,5,6,7,8,9,9\n" * 10, [], "(allowed: m, mm, um, nm)"),
     "scan: empty": ("scan", "", ["--unit", "um", "--step-m", "1e-6"], "a.csv: empty"),
     "scan: words": ("scan", "a,b\nc,d\n", ["--unit", "um", "--step-m", "1e-6"], "a.csv: empty"),
     "scan: ragged": ("scan", "1,2,3\n4,5\n", ["--unit", "um", "--step-m", "1e-6"], "row 2: 2 cel"),

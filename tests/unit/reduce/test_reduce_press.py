@@ -51,6 +51,15 @@ def reduced(path, content, **options):
     return load_kind("press").run(path, options, source="test")
 
 
+def test_what_was_hardly_taken_off_is_as_unsure_as_its_power(tmp_path):
+    rows = record()
+    top = int(np.argmax(rows[2]))
+    rest = rows[:, top:]
+    whole = np.concatenate([rows[:, :top], rest[:, rest[2] > 0.74 * TOP]], axis=1)
+    left = reduced(tmp_path / "a.csv", text(whole)).values["permanent_depth_m"]
+    assert abs(left.value - (DEEP - BACK)) < 2.0 * left.std < 0.5 * BACK * 2.0
+
+
 MAKERS = {
     "zwick": dict(
         head="Probe 1\nPrüfzeit;Standardweg;Standardkraft\ns;mm;N\n", sizes=(1, -1e3, -1),

@@ -89,6 +89,29 @@ def test_a_grid_is_read_with_any_separator(tmp_path, between, comma, end):
     assert abs(found.value - 3e-6) < 3.0 * found.std
 
 
+def test_points_that_were_not_seen_are_left_out_of_a_file_and_not_of_the_volume(tmp_path):
+    seen = np.random.default_rng(5).random(DENT.shape) < 0.9
+    points = [f"{10 * k} {10 * i} {1e6 * DENT[i, k]:.4f}" for i, k in np.argwhere(seen)]
+    (tmp_path / "a.xyz").write_text("\n".join(points))
+    found = reduce(tmp_path / "a.xyz", Options(unit="um")).values
+    assert abs(found["permanent_depth_m"].value - 3e-6) < 3.0 * found["permanent_depth_m"].std
+    whole = -1e-10 * DENT[DENT < -1e-7].sum()
+    assert found["crater_volume_m3"].value == pytest.approx(whole, rel=0.03)
+
+
+V, U = np.mgrid[-1:1:200j, -1:1:200j]
+RANGE = np.hypot(U, V)
+ROUGH = np.random.default_rng(7).normal(0.0, 2e-8, U.shape)
+CUT = ROUGH - 1e-5 * ((U > 0.8) & (np.abs(V) < 0.3))
+RING = ROUGH + 3e-6 * (RANGE < 0.2) - 1e-6 * np.exp(-(((RANGE - 0.32) / 0.06) ** 2))
+
+
+@pytest.mark.parametrize(("z", "said"), [(CUT, "leaves the scan"), (RING, "surrounds a hill")])
+def test_what_is_no_crater_is_none(tmp_path, errs, z, said):
+    np.savetxt(tmp_path / "a.csv", z, delimiter=",")
+    assert said in errs("reduce", "scan", tmp_path / "a.csv", "--unit", "m", "--step-m", "1e-5")
+
+
 def test_lines_of_an_instrument_above_a_grid_and_units_of_columns_are_read(tmp_path):
     said = '"Model","VK-X"\n"XY calibration","10","um"\n"Horizontal","40"\n""\n"Height"\n'
     rows = [",".join(f'"{v:.4e}"' for v in row) for row in DENT]

@@ -86,6 +86,8 @@ def reduced(path, up):
 @pytest.mark.parametrize(
     ("write", "up"),
     [(motive, "y"), (lambda p: motive(p, units="Millimeters", scale=1e3), "y"), (vicon, "z"),
+     (lambda p: p.write_text(motive(p).read_text("utf-8-sig").replace(",Type,", ",,")
+                             .replace(",Name,", ",,").replace(",ID,", ",,")) and p, "y"),
      (lambda p: vicon(p, before="Devices\n1000\n,,Plate\nFrame,Sub Frame,Fz\n,,N\n1,0,5\n\n"), "z"),
      (lambda p: qualisys(p, timed=True), "z"), (lambda p: qualisys(p, timed=False), "z"),
      (opensim, "y")],

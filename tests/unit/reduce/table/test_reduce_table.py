@@ -11,6 +11,7 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.file import read_columns
+from dentscope.reduce.table.heading import unit_in
 from dentscope.reduce.table.pulse import find_pulse
 from raw_files import bouncing
 from scipy.integrate import solve_ivp
@@ -116,6 +117,20 @@ def test_text_tables(tmp_path, text, names, first):
     table = read_columns(path)
     assert table.names == names
     assert table.values[0] == pytest.approx(first)
+
+
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [("HLD\n800\n", "leeb"), ("drop_mm,rebound_mm\n1000,640\n", "rebounds")],
+)
+def test_a_column_is_found_by_what_it_is(tmp_path, text, holds):
+    (tmp_path / "a.csv").write_text(text)
+    found = load_kind("table").run(tmp_path / "a.csv", {"holds": holds}, source="test")
+    assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8])
+
+
+def test_a_unit_stands_in_a_line_of_its_own():
+    assert unit_in("Kraft\nkN") == "kN"
 
 
 @measured
