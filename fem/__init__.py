@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from .problem import (
-    NUMERICS_VERSION,
-    Accuracy,
-    ContactProblem,
-    geometric_depths,
-)
+from .problem import NUMERICS_VERSION, Accuracy, ContactProblem, geometric_depths
 from .results.uncertainty import (
     MESH_ERRORS_FILE,
     MESH_ERRORS_FORMAT,

@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-from ..core.arrays import Array, Integers, Mask
+from ..core.arrays import Array, Integers
 from .discretise import Discretisation
 from .elements import State, deformation, radius_at_rest
 from .material import exponential, log_strain
@@ -46,7 +46,8 @@ class Transfer:
         now = np.empty(self.new.mesh.points.shape)
         for sphere, (before, after) in zip(_BODIES, self._layers, strict=True):
             # the pole closes each line of nodes
-            pole = np.full((1, before.nodes.shape[1]), _pole(self.old.mesh, sphere))
+            surface = self.old.mesh.sphere_surface if sphere else self.old.mesh.flat_surface
+            pole = np.full((1, before.nodes.shape[1]), surface[0])
             nodes = np.concatenate([pole, before.nodes])
             spline = Akima1DInterpolator(np.insert(before.level, 0, 0.0), was[nodes], axis=0)
             now[after.nodes] = spline(np.clip(after.level, 0.0, before.level[-1]))
@@ -80,9 +81,8 @@ class Transfer:
             old, new = (_lines_of_points(x, where) for x, where in zip(layers, place, strict=True))
             at_old, at_new = _between(before.level), _between(after.level)
             out[new] = _linear(at_old, data[old], at_new)
-            rest = np.setdiff1d(
-                np.flatnonzero(np.repeat(_is_sphere(self.new) == sphere, 4)), new.ravel()
-            )
+            of_body = (self.new.element_index < self.new.mesh.n_sphere_quads) == sphere
+            rest = np.setdiff1d(np.flatnonzero(np.repeat(of_body, 4)), new.ravel())
             level, angle = _polar(points[rest], sphere)
             lines = _between(_places(self.old.mesh, before, sphere))
             out[rest] = _linear_each(lines, _linear(at_old, data[old], level), angle)
@@ -160,18 +160,10 @@ def _places(mesh: Mesh, layers: Layers, sphere: bool) -> Array:
     return _polar(mesh.points[layers.nodes[0]], sphere)[1]
 
 
-def _pole(mesh: Mesh, sphere: bool) -> int:
-    return int((mesh.sphere_surface if sphere else mesh.flat_surface)[0])
-
-
 def _core_nodes(mesh: Mesh, layers: Layers, sphere: bool) -> Integers:
     n = mesh.n_sphere_points
     body = np.arange(n) if sphere else np.arange(n, len(mesh.points))
     return np.setdiff1d(body, layers.nodes.ravel())
-
-
-def _is_sphere(grid: Discretisation) -> Mask:
-    return np.asarray(grid.element_index < grid.mesh.n_sphere_quads)
 
 
 def _between(level: Array) -> Array:

@@ -95,7 +95,8 @@ def crater_shape(pair: Pair, left: Left, body: Body, *, without: int = -1) -> Cr
 def _groups(pair: Pair, left: Left, body: Body) -> Array:
     """What the shape depends on, the elastic share first; strengths at Tabor's strain, 0.2 a/R."""
     a = left.radius / pair.R
-    (ours, exponent), (theirs, _) = (_strength(m, 0.2 * a) for m in _own_first(pair, body))
+    own_first = (pair.sphere, pair.flat)[:: 1 if body == "sphere" else -1]
+    (ours, exponent), (theirs, _) = (_strength(metal, 0.2 * a) for metal in own_first)
     share = pair.elastic_share if body == "sphere" else 1.0 - pair.elastic_share
     whole = left.sphere + left.flat
     weaker = 1.0 if math.isinf(theirs) else theirs / (ours + theirs)
@@ -103,10 +104,6 @@ def _groups(pair: Pair, left: Left, body: Body) -> Array:
         share, weaker, math.log(pair.E_reduced / ours), math.log(a), math.log(whole / left.depth),
         exponent, math.log(left.of(body) / whole),
     ])  # fmt: skip
-
-
-def _own_first(pair: Pair, body: Body) -> tuple[Material, Material]:
-    return (pair.sphere, pair.flat) if body == "sphere" else (pair.flat, pair.sphere)
 
 
 def _strength(metal: Material, strain: float) -> tuple[float, float]:

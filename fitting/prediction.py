@@ -76,17 +76,14 @@ def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
 def predict_by(numbers: PairNumbers, table: Table, turns: ResidualTable) -> Prediction:
     """Draw every case's curves from its numbers, fields of shape (n_cases,) or single numbers."""
     pressed, released = (
-        PairNumbers(*(_each(x, rows.case) for x in numbers)) for rows in (table, turns)
+        PairNumbers(*(x[rows.case] if np.ndim(x) else x for x in numbers))
+        for rows in (table, turns)
     )
     y, phi, a = spread_at(table.D, pressed)
     F = force_at(table.D, a, pressed)
     share = share_at(table.D, y, F, a, phi, pressed)
     at = contact(turns.D, released)
     return Prediction(F, a, share, at.left, at.phi * at.left, at.N)
-
-
-def _each(number: Any, case: Any) -> Any:
-    return number[case] if np.ndim(number) else number
 
 
 def given_back(p: Prediction, turns: ResidualTable) -> Any:

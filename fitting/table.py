@@ -115,8 +115,10 @@ def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, Resid
     neither.
     """
     chosen: dict[object, CaseRecord] = {}
-    found = [r for of in sources.values() for r in of if is_held_out(r) == held_out]
-    for record in _fine_ones([r for r in found if _fitted(r.case.pair)]):
+    asked = [r for of in sources.values() for r in of if is_held_out(r) == held_out]
+    found = [r for r in asked if r.case.pair.perfectly_plastic and np.isfinite(r.case.pair.Sy_min)]
+    fine = [r for r in found if r.case.accuracy.level != _COARSEST]
+    for record in fine or found:
         key = tuple(np.round(_key(record.case.pair), 9))
         if key not in chosen or _worth(record) >= _worth(chosen[key]):
             chosen[key] = record
@@ -129,14 +131,6 @@ def tables_of(sources: Sources, *, held_out: bool = False) -> tuple[Table, Resid
         )
     records = list(chosen.values())
     return _loading(records), _residuals(records)
-
-
-def _fitted(pair: Pair) -> bool:
-    return bool(np.isfinite(pair.Sy_min)) and pair.perfectly_plastic
-
-
-def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:
-    return [r for r in records if r.case.accuracy.level != _COARSEST] or records
 
 
 def is_held_out(record: CaseRecord) -> bool:

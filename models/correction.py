@@ -11,7 +11,6 @@ regressors.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -95,12 +94,8 @@ def bumps(groups: Any, centres: Array, reaches: Array) -> Any:
 def moved(numbers: PairNumbers, shifts: Any) -> PairNumbers:
     """Return the numbers with shifts of shape (n, n_channels) applied."""
     bent = _UNITS * shifts / np.sqrt(1.0 + (shifts / MOST) ** 2)
-    changed: Mapping[str, Any] = {
-        name: _moved(getattr(numbers, name), bent[:, k], channel)
-        for k, (name, channel) in enumerate(CHANNELS.items())
-    }
+    changed: dict[str, Any] = {}
+    for k, (name, channel) in enumerate(CHANNELS.items()):
+        number, by = getattr(numbers, name), bent[:, k]
+        changed[name] = number * np.exp(by) if channel.factor else number + by
     return numbers._replace(**changed)
-
-
-def _moved(number: Any, bent: Any, channel: Channel) -> Any:
-    return number * np.exp(bent) if channel.factor else number + bent

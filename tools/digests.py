@@ -2,7 +2,7 @@
 
     python tools/digests.py
 
-`tests/contract/test_digests.py` compares the page with the files.
+`tests/contract/test_structure.py` compares the page with the files.
 """
 
 from __future__ import annotations

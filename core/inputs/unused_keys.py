@@ -20,7 +20,7 @@ def unused_keys(content: Mapping[str, Any], used: Collection[str]) -> list[str]:
     ['flat.E_Pa.std = 4e+09', 'flat.nu = 0.3']
     """
     return [
-        f"{key} = {_shown(value)}"
+        f"{key} = {value:g}" if isinstance(value, float) else f"{key} = {value}"
         for key, value in _leaves(content, "")
         if _without_name(key) not in used and key.rpartition(".")[2] not in _FOR_PEOPLE
     ]
@@ -42,7 +42,3 @@ def _leaves(content: Mapping[str, Any], before: str) -> Iterator[tuple[str, Any]
 def _without_name(key: str) -> str:
     parts = key.split(".")
     return ".".join(["strikers", "NAME", *parts[2:]]) if parts[0] == "strikers" else key
-
-
-def _shown(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -9,6 +9,7 @@ import tomlkit
 from dentscope.cli.case import tell_unused
 from dentscope.cli.shared.keys import keys_of
 from dentscope.start.case_file import read_case, read_pair
+from made_files import put
 
 CASE = {
     "radius_m": 0.005,
@@ -63,8 +64,7 @@ def merged(table, more):
 
 def of_a_case(content, folder):
     (folder / "curve.csv").write_text("plastic_strain,stress_Pa\n0,3e8\n0.1,4e8\n1,5e8\n")
-    file = folder / "CASE.toml"
-    file.write_text(tomlkit.dumps(content))
+    file = put(folder / "CASE.toml", tomlkit.dumps(content))
     problem, accuracy = read_case(file)
     return repr(asdict(problem)), repr(accuracy), repr(read_pair(file)[0].ball_mass), file
 
@@ -111,8 +111,7 @@ def test_a_key_of_an_inverse_acts(key, tmp_path, prints):
         table = content["striker"] if key.table == "[striker]" else content["trial"][0]
         if changed:
             table[key.name] = OF_AN_INVERSE[key.name]
-        file = tmp_path / "a.toml"
-        file.write_text(tomlkit.dumps(content))
+        file = put(tmp_path / "a.toml", tomlkit.dumps(content))
         assert tomllib.loads(file.read_text()) == content
         shown = prints("inverse", file, "--out", tmp_path / "out")
         told.append((shown, (tmp_path / "out" / "a-inverse.csv").read_text()))

@@ -1,13 +1,11 @@
-"""What the layout promises: no circle of imports, small folders and functions, a whole wheel.
-
-`make check` keeps the order of the stages; this keeps the rest of docs/architecture.md.
-"""
+"""What the layout promises: no circle of imports, small folders and functions, a wheel, sizes."""
 
 import ast
 import re
 import runpy
 import sys
 import tomllib
+import zipfile
 from functools import cache
 from pathlib import Path
 
@@ -223,3 +221,91 @@ def test_the_version_is_the_same_wherever_it_stands():
     if heads[0][2:] == ["(unreleased)"]:  # what is being made stands above what went out
         assert heads.pop(0)[1] > version
     assert heads[0][1] == version
+
+
+LEDGER = runpy.run_path(str(Path(__file__).resolve().parents[2] / "tools" / "ledger.py"))
+SIZE = {"lines": 150.0, "code": 100.0, "modules": 50.0, "numbers": 10.0, "words": 0.0}
+
+
+def test_a_part_that_grew_by_more_than_two_percent_is_found():
+    assert LEDGER["grown"]({"fem": SIZE | {"code": 102.0, "lines": 900.0}}, {"fem": SIZE}) == {}
+    assert LEDGER["grown"]({"fem": SIZE | {"code": 103.0}}, {"fem": SIZE}) == {"fem": ["code"]}
+    assert LEDGER["grown"]({"new": SIZE}, {}) == {"new": ["code", "modules", "numbers"]}
+
+
+def test_growth_is_excused_where_the_newest_version_says_what_for():
+    older = "## 0.3.0\n\nFor developers:\n\n- cli grew: long ago\n"
+    newest = "## 0.4.0\n\n- cli grew: to users\n\nFor developers:\n\n- fem grew: C\n- core grew:\n"
+    assert LEDGER["accounted"]("# Changelog\n\n" + newest + older) == {"fem"}
+
+
+def test_lines_of_code_are_without_blanks_comments_and_docstrings():
+    text = '"""Told\nwell."""\n\nX = (  # a comment\n    1,\n)\n# alone\ndef f():\n    """Do."""\n'
+    assert LEDGER["code_lines"](text, ast.parse(text)) == {4, 5, 6, 8}
+
+
+def test_every_stage_is_in_it():
+    assert {"fem", "fitting", "models", "campaigns", "dynamics", "reduce"} < set(LEDGER["parts"]())
+
+
+SMALLEST = """
+[build-system]
+requires = ["setuptools"]
+build-backend = "setuptools.build_meta"
+[project]
+name = "dentscope"
+version = "1"
+[tool.setuptools]
+package-dir = {"dentscope" = "."}
+packages = ["dentscope", "dentscope.core"]
+"""
+
+
+@pytest.mark.filterwarnings("ignore")  # setuptools' own of what it may drop some day
+def test_stubs_of_an_editable_install_are_the_sources(tmp_path, monkeypatch) -> None:
+    (tmp_path / "core").mkdir()
+    (tmp_path / "pyproject.toml").write_text(SMALLEST)
+    for name in ("__init__.py", "__main__.py", "py.typed", "core/__init__.py"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "core/numbers.py").write_text("ONE: int = 1\n")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "made").mkdir()
+    backend = runpy.run_path(str(ROOT / "tools/build_backend.py"))
+    for _ in range(2):  # made again over itself
+        name = backend["build_editable"](str(tmp_path / "made"))
+    with zipfile.ZipFile(tmp_path / "made" / name) as wheel:
+        leads = wheel.read("dentscope-stubs.pth").decode()
+        (record,) = (n for n in wheel.namelist() if n.endswith("RECORD"))
+        assert "dentscope-stubs.pth,sha256=" in wheel.read(record).decode()
+    stubs = Path(leads.strip()) / "dentscope-stubs"
+    assert stubs.resolve().is_relative_to(tmp_path)
+    assert (stubs / "__init__.pyi").is_file()
+    assert (stubs / "py.typed").is_file()
+    assert (stubs / "core/numbers.py").read_text() == "ONE: int = 1\n"
+
+
+DIGESTS = runpy.run_path(str(ROOT / "tools" / "digests.py"))
+
+
+def test_the_page_of_digests_is_what_the_files_say():
+    told, found = DIGESTS["PAGE"].read_text(), DIGESTS["page"]()
+    assert told == found, "run `python tools/digests.py`, after making anew what it names"
+
+
+def test_the_coefficients_come_from_published_parts():
+    assert all("-" in name and name.endswith(".h5") for name in DIGESTS["parts_read"]())
+
+
+def test_the_challenge_was_drawn_from_these_coefficients():
+    from dentscope.campaigns import read_curves
+    from dentscope.models.coefficients import drawn_from
+
+    fitted = drawn_from()
+    names = [
+        r.case.name
+        for part in sorted((ROOT / "data" / "challenge").glob("*.h5"))
+        for r in read_curves(part)
+    ]
+    assert len(names) == 24
+    assert all(any(fitted.startswith(bit) for bit in name.split("-") if len(bit) > 5)
+               for name in names), names[:2]  # fmt: skip

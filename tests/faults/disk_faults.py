@@ -222,52 +222,29 @@ CASES = tuple(case_of(f"c{i}", Sy=4e8 + 1e6 * i, n_depths=12) for i in range(4))
 DESIGN = Design("trial", "", lambda: CASES)
 
 
-def put_writer():
-    """The fourth case into a run of three."""
+def put_writer(name, *others, failed=False):
+    """The fourth case into a run: of others, of none yet, or of its own failure."""
 
     def begin(place):
-        for case in CASES[:3]:
-            Store(place / "run").put(case, solved(case))
+        for case in others:
+            Store(place / "out" / "run").put(case, solved(case))
+        if failed:
+            Store(place / "out" / "run").put(CASES[3], None, message="lost")
 
     def act(place):
-        Store(place / "run").put(CASES[3], solved(CASES[3]))
+        Store(place / "out" / "run").put(CASES[3], solved(CASES[3]))
 
     def check(place):
-        found = {r.id: r for r in Store(place / "run").read_all()}
-        for case in CASES[:3]:
+        records = Store(place / "out" / "run").read_all()
+        found = {r.id: r for r in records}
+        assert len(found) == len(records)
+        for case in others:
             assert np.array_equal(found[case.id].curve["force"], solved(case).loading.force)
-        return "new" if CASES[3].id in found else "old"
+        mine = found.get(CASES[3].id)
+        assert (mine.status == "done" or mine.message == "lost") if mine else not failed
+        return "new" if mine and mine.status == "done" else "old"
 
-    return Writer("put", begin, act, check)
-
-
-def first_writer():
-    """The first case into a run that is not there yet."""
-
-    def act(place):
-        Store(place / "out" / "run").put(CASES[0], solved(CASES[0]))
-
-    def check(place):
-        return "new" if Store(place / "out" / "run").read_all() else "old"
-
-    return Writer("put, new run", lambda place: None, act, check)
-
-
-def retry_writer():
-    """A case that had failed is completed."""
-
-    def begin(place):
-        Store(place / "run").put(CASES[0], None, message="lost")
-
-    def act(place):
-        Store(place / "run").put(CASES[0], solved(CASES[0]))
-
-    def check(place):
-        [record] = Store(place / "run").read_all()
-        assert record.status == "done" or record.message == "lost"
-        return "new" if record.status == "done" else "old"
-
-    return Writer("put, tried again", begin, act, check)
+    return Writer(name, begin, act, check)
 
 
 def publish_writer(folder):
@@ -442,9 +419,9 @@ def together_writer():
 def writers(folder):
     folder.mkdir(parents=True, exist_ok=True)
     return {
-        "put": put_writer,
-        "put, new run": first_writer,
-        "put, tried again": retry_writer,
+        "put": lambda: put_writer("put", *CASES[:3]),
+        "put, new run": lambda: put_writer("put, new run"),
+        "put, tried again": lambda: put_writer("put, tried again", failed=True),
         "publish": lambda: publish_writer(folder),
         "reduce --into": lambda: into_writer(folder),
         "fit --publish": lambda: publish_fit_writer(folder),

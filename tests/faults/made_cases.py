@@ -5,6 +5,7 @@ from dentscope import fem
 from dentscope.campaigns import standard_case
 from dentscope.core import COMPLETED, Material, Pair
 from dentscope.fem import Counters, Curve, Solution
+from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent
 
 
 def case_of(name="one", *, scale=1.0, R=1e-3, Sy=5e8, n_depths=4, **asked):
@@ -23,3 +24,19 @@ def solution_of(case, outcome=COMPLETED, *, line=None, **parts):
     curve = Curve(**{**dict.fromkeys(Curve.__dataclass_fields__, line), **parts})
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     return Solution(case.problem, case.accuracy, outcome, curve, (), (), counters, "mesh")
+
+
+def table_of(record, *, error):
+    """The table of a stored solve, every number of its loading known to `error`."""
+    pair, c = record.case.pair, record.curve
+    rows = []
+    for u in record.unloadings:
+        left = u.residual_sphere + u.residual_flat
+        exponent = energy_exponent(u.curve["delta"], u.curve["force"], left)
+        rows.append((u.depth, left / (u.depth * pair.R), u.residual_sphere / left, exponent))
+    known = np.full(len(c["delta"]), error)
+    curve = LoadingCurve(
+        c["delta"] / pair.R, c["force"] / (pair.E_reduced * pair.R**2), c["radius"] / pair.R,
+        c["sphere"] / (c["sphere"] + c["flat"]), known, known, known,
+    )  # fmt: skip
+    return PairTable(pair, curve, Turns(*np.array(sorted(rows)).T))

@@ -14,7 +14,17 @@ import numpy as np
 import raw_files
 from dentscope.campaigns import Design, Store, publish, read_curves
 from dentscope.campaigns.parts import CHECKSUMS
+from dentscope.core.material import Material, Pair
 from dentscope.core.output import PENDING
+from dentscope.core.output import _pending as pending
+from dentscope.dynamics.files.inverse_file import read_inverse
+from dentscope.dynamics.files.setup import read_setup
+from dentscope.models import law_named
+from dentscope.models.table import LoadingCurve, PairTable, Turns
+from dentscope.models.table_file import write_table
+from dentscope.recordings import audit, read
+from dentscope.recordings.fetch import read_catalogue
+from dentscope.start.case_file import read_case, read_flow_curve
 from mutations import mutated, resealed, tampered
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -92,8 +102,6 @@ def lay_out(reader, content, folder):
 
 
 def _read_set(path):
-    from dentscope.recordings import audit, read
-
     folder = path.parent if path.parent.name not in ("traces", "profiles", "reduced") else (
         path.parent.parent
     )  # fmt: skip
@@ -140,8 +148,6 @@ def shipped_set(name, folder):
 
 
 def _pending():
-    from dentscope.core.output import _pending as pending
-
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         for name, make in WHOLE.items():
@@ -168,22 +174,7 @@ def _other_pending(content, draw):
 # --- pairs and impacts ---
 
 
-def _read_case(path):
-    from dentscope.start.case_file import read_case
-
-    read_case(path)
-
-
-def _read_flow_curve(path):
-    from dentscope.start.case_file import read_flow_curve
-
-    read_flow_curve(path)
-
-
 def _read_setup(path):
-    from dentscope.dynamics.files.setup import read_setup
-    from dentscope.models import law_named
-
     setup = read_setup(path)
     scene = setup.scene(law_named("hertz"))
     numbers = (scene.approach.speed, scene.striker.mass, scene.pair.R, scene.pair.E_reduced)
@@ -191,18 +182,12 @@ def _read_setup(path):
 
 
 def _read_inverse(path):
-    from dentscope.dynamics.files.inverse_file import read_inverse
-
     rows = read_inverse(path)
     for row in rows:
         assert np.isfinite([row.inferred.duration, row.inferred.mean_force]).all(), "NaN"
 
 
 def _law():
-    from dentscope.core.material import Material, Pair
-    from dentscope.models.table import LoadingCurve, PairTable, Turns
-    from dentscope.models.table_file import write_table
-
     d = np.geomspace(1e-4, 0.05, 30)
     spread = np.full(30, 0.003)
     pair = Pair(Material(E=2e11, nu=0.3, Sy=8e8), Material(E=2e11, nu=0.3, Sy=3e8), 0.01)
@@ -213,19 +198,11 @@ def _law():
 
 
 def _read_law(path):
-    from dentscope.models import law_named
-
     law = law_named(str(path))
     pair = law.tables[0].pair
     depth = law.tables[0].curve.depth
     assert np.isfinite(law.tables[0].numbers).all(), "NaN"
     assert np.isfinite(law.share(pair, depth * pair.R)).all(), "NaN"
-
-
-def _read_catalogue(path):
-    from dentscope.recordings.fetch import read_catalogue
-
-    read_catalogue(path)
 
 
 # --- campaigns ---
@@ -284,8 +261,8 @@ READERS = {
     "pending": Reader(PENDING, _pending, _read_set, WHOLE, _other_pending),
     "thesis set.toml": shipped_set("set.toml", "thesis-chapter-5"),
     "oblique trials.csv": shipped_set("trials.csv", "kharaz-2001-oblique"),
-    "CASE.toml": Reader("CASE.toml", lambda: CASE, _read_case, CURVE),
-    "flow_curve.csv": Reader("flow_curve.csv", CURVE["flow_curve.csv"], _read_flow_curve),
+    "CASE.toml": Reader("CASE.toml", lambda: CASE, read_case, CURVE),
+    "flow_curve.csv": Reader("flow_curve.csv", CURVE["flow_curve.csv"], read_flow_curve),
     "impact.toml": Reader(
         "impact.toml", lambda: _data("examples", "impact_rod.toml") + IMPACT.encode(), _read_setup
     ),
@@ -294,7 +271,7 @@ READERS = {
     ),
     "law.json": Reader("law.json", _law, _read_law),
     "fetch.toml": Reader(
-        "fetch.toml", partial(_data, "data", "recordings", "fetch.toml"), _read_catalogue
+        "fetch.toml", partial(_data, "data", "recordings", "fetch.toml"), read_catalogue
     ),
     "case's file": Reader(
         "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, _broken_seal

@@ -2,6 +2,7 @@
 
 import errno
 import hashlib
+import importlib.util
 import json
 import os
 import re
@@ -117,3 +118,39 @@ def test_everything_is_written_by_the_one_writer():
     allowed = ("recording_set.py: path.write_bytes(content", "fetch.py", "DISK.rename",
                "Path(os.devnull).open(")  # fmt: skip
     assert [one for one in found if not any(word in one for word in allowed)] == []
+
+
+_FILE = Path(__file__).parents[2] / "tools" / "benchmarks" / "fuzz_keys.py"
+_SPEC = importlib.util.spec_from_file_location("fuzz_keys", _FILE)
+fuzz_keys = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(fuzz_keys)
+
+QUICK = ("inverse", "case", "recordings", "export")
+
+
+def test_the_same_seed_makes_the_same_input():
+    first, second = (fuzz_keys.one(4, 7) for _ in range(2))
+    assert first["text"] == second["text"]
+    assert first["kind"] == "inverse"
+
+
+@pytest.mark.parametrize("number", range(60))
+def test_an_extreme_file_is_answered_or_refused(number):
+    found = fuzz_keys.one(number, 11, kinds=QUICK)
+    assert found["told"] in ("answered", "refused", "not ended"), found["text"] + found["where"]
+
+
+@pytest.mark.parametrize(
+    ("out", "told"),
+    [("a  nan", "NAN"), ("e = inf", "NAN"), ("banana infinite", "answered"), ("0.5", "answered")],
+)
+def test_a_nan_with_exit_code_0_is_a_fault(out, told):
+    assert fuzz_keys.judged("impact", 0, out, "") == told
+
+
+def test_faults_are_told_from_refusals():
+    assert fuzz_keys.judged("impact", 2, "", "a.toml: target.nu: 0.7\n") == "refused"
+    assert fuzz_keys.judged("impact", 2, "", "") == "UNSAID"
+    assert fuzz_keys.judged("impact", 2, "", "depth: a depth is not a number") == "UNSAID"
+    assert fuzz_keys.judged("impact", 1, "", "Traceback (most recent call last)") == "TRACEBACK"
+    assert fuzz_keys.judged("impact", 3, "", "budget") == "not ended"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.dynamics import strike, tabulated
-from dentscope.dynamics.files.setup import DEFAULT_LAWS, setup_of
+from dentscope.dynamics.files.setup import DEFAULT_LAWS
 from dentscope.dynamics.tabulated.cells import MOST_CELLS, cells_of
 from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts
 from dentscope.dynamics.tabulated.energy_table import energy_table
@@ -76,7 +76,7 @@ def test_a_sweep_ends(bodies: str, support: str, angle: float) -> None:
     assert_swept(bodies, support, angle)
 
 
-_SOFT = {"shape": "sphere", "tip_radius_m": 0.005, **_of(3e8)}
+_SOFT = _of(3e8)
 SWEEPS: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], dict[str, Any]]] = {
     "heights": (
         _SOFT, _of(5e9), {"drop_height_m": 0.1}, {"drop_height_m": [1e-3, 0.1, 150.0]},
@@ -110,18 +110,11 @@ SWEEPS: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], dict[str
 
 @pytest.mark.parametrize(("ball", "flat", "blow", "swept"), SWEEPS.values(), ids=SWEEPS)
 def test_a_sweep_of_anything_ends(ball, flat, blow, swept):
-    content = {
-        "gravity_m_s2": 0.0, "target": flat, "strikers": {"ball": ball},
-        "friction": {"coefficient": 0.1},
-        "impact": {
-            **({} if "drop_height_m" in blow else {"impact_speed_m_s": 1.0}),
-            "laws": list(DEFAULT_LAWS), **blow,
-        },
-        "sweep": swept,
-    }  # fmt: skip
-    if "drop_height_m" in blow:
-        del content["gravity_m_s2"]  # a fall needs it
-    setup = setup_of(content, source="sweep")
+    falls = "drop_height_m" in blow
+    setup = ball_setup(
+        target=flat, ball=ball, speed=0.0 if falls else 1.0, gravity_m_s2=9.81 if falls else 0.0,
+        friction={"coefficient": 0.1}, impact={"laws": list(DEFAULT_LAWS), **blow}, sweep=swept,
+    )  # fmt: skip
     for name in setup.laws:
         found = setup.swept(LAWS[name])
         assert (found["outcome"] == "completed").all()
@@ -191,13 +184,9 @@ def test_a_dent_wider_than_any_scan_ends() -> None:
     # 23 g behind a tip of 16 nm at 5 km/s: the law's contact radius outgrows every number
     flat = {"E_Pa": 1472.1941916177072, "nu": 8.559266787331163e-7,
             "hardness_Pa": 2099.288698399014}  # fmt: skip
-    ball = {
-        "shape": "sphere", "tip_flat_radius_m": 1.767634043089143e-14,
-        "tip_radius_m": 1.5984525113821708e-8, "mass_kg": 0.022639303675060042,
-        "E_Pa": 19920.697094265295, "nu": 4.1039944612038056e-7, "Sy_Pa": 1000.0,
-    }  # fmt: skip
-    blow = {"impact_speed_m_s": 5433.689379843022, "laws": ["ghaednia"]}
-    content = {"target": flat, "strikers": {"ball": ball}, "impact": blow}
-    setup = setup_of(content, source="dent")
+    ball = {"tip_flat_radius_m": 1.767634043089143e-14, "mass_kg": 0.022639303675060042,
+            "E_Pa": 19920.697094265295, "nu": 4.1039944612038056e-7, "Sy_Pa": 1000.0}  # fmt: skip
+    setup = ball_setup(target=flat, ball=ball, radius=1.5984525113821708e-8, law="ghaednia",
+                       speed=5433.689379843022, gravity_m_s2=9.81)  # fmt: skip
     found = strike(setup.scene(LAWS["ghaednia"]), setup.settings)
     assert found.peak_depth_m > 1.0

@@ -5,16 +5,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.dynamics import (
-    Approach,
-    Modes,
-    Settings,
-    Striker,
-    Support,
-    scene_of,
-    strike,
-    traced,
-)
+from dentscope.dynamics import Approach, Modes, Settings, Striker, Support, scene_of, strike, traced
 from dentscope.dynamics.beam import axial_frequencies, bending_modes, shear_coefficient
 from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.dynamics.mechanisms.half_space_waves import HalfSpaceWaves

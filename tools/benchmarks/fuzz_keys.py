@@ -5,7 +5,7 @@ grammar of keys below, each value within what `dentscope keys` allows, runs the 
 that stays, and prints for each command how many were answered, refused with a line, ended with exit
 code 3, and what else happened. A child that takes more than 30 s of its processor over one file is
 ended (tests/faults/watched.py): a hang. `--first 2000` goes on at that file, `--only 17` shows one.
-The seeded short form is `tests/faults/test_fuzz_keys.py`.
+The seeded short form is `tests/faults/test_faults.py`.
 """
 
 import argparse

@@ -20,13 +20,7 @@ from ....campaigns import CaseRecord
 from ....core.arrays import Array, Mask
 from ....core.material import Material, Pair
 from ....core.output import write_file
-from ....fem import (
-    NUMERICS_VERSION,
-    Accuracy,
-    ContactProblem,
-    geometric_depths,
-    solve,
-)
+from ....fem import NUMERICS_VERSION, Accuracy, ContactProblem, geometric_depths, solve
 from ....fem.discretise import discretise
 from ....fem.mesh import Zone
 from ....models import LAWS

@@ -1,13 +1,22 @@
-"""What is stored of a case's quality, and how well the time left is foreseen."""
+"""Designs, a case's stored quality, and how well the time left is foreseen."""
 
+import itertools
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from dentscope import fem
-from dentscope.campaigns import DESIGNS, Forecast, distinct_cases, quality_of
+from dentscope.campaigns import DESIGNS, Forecast, design_named, distinct_cases, quality_of
+from dentscope.campaigns.case import _rounded
+from dentscope.campaigns.cases.drawn import challenge_cases
+from dentscope.campaigns.cases.pairs import RATIOS
 from dentscope.campaigns.cost import pace_of_this_machine
-from dentscope.campaigns.quality import steps_not_in
+from dentscope.campaigns.parts import opened_part, texts_of
+from dentscope.campaigns.quality import largest_step, steps_not_in
+from dentscope.cli.campaign_progress import remarks
+from made_cases import case_of
 
 
 def curve(**changes):
@@ -108,3 +117,115 @@ def test_a_slow_machine_is_foreseen_before_anything_ran():
     usual = Forecast(cases, workers=2).left_s()
     assert Forecast(cases, workers=2, pace=2.0).left_s() == pytest.approx(2.0 * usual)
     assert 0.1 < pace_of_this_machine() < 100.0
+
+
+@pytest.mark.parametrize(
+    ("energy", "step", "said"),
+    [(0.0049, 0.0099, ""), (0.0051, 0.0, "energy defect"), (0.0, 0.0101, "step of")],
+)
+def test_a_case_is_remarked_from_half_a_per_cent_of_energy_and_a_per_cent_of_a_step(
+    energy, step, said
+) -> None:
+    quality = SimpleNamespace(energy_defect=energy, largest_step=step)
+    told = remarks(SimpleNamespace(status="done", stale=False, quality=quality))
+    assert (said in told) if said else (told == "")
+
+
+def test_groups_are_one_to_twelve_digits() -> None:
+    assert _rounded(1.0 + 4e-12) == 1.0
+    assert _rounded(1.0 + 6e-12) > 1.0
+
+
+def test_a_step_is_seen_from_eight_depths_on_by_what_a_cubic_over_seven_leaves() -> None:
+    """A single step of 1 % shows two thirds of itself, which is made up for."""
+    depth = np.geomspace(1e-5, 1e-2, 20)
+    stepped = depth**1.5 * np.where(np.arange(20) < 10, 1.0, 1.01)
+    assert largest_step(depth, stepped) == pytest.approx(0.01, rel=0.02)
+    assert np.isnan(largest_step(depth[:7], stepped[:7]))
+    assert largest_step(depth[:8], depth[:8]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_case_under_way_still_takes_a_seventh_of_its_time_however_long_it_has() -> None:
+    one = case_of()
+    forecast = Forecast([one], workers=1)
+    whole = forecast.cost_s(one)
+    assert forecast.left_s(0.5 * whole) == pytest.approx(0.5 * whole)
+    assert forecast.left_s(9.0 * whole) == pytest.approx(0.15 * whole)
+
+
+PUBLISHED = Path(__file__).parents[3] / "data" / "campaign"
+
+
+@pytest.fixture(scope="module")
+def cases():
+    return {name: distinct_cases(DESIGNS[name]) for name in DESIGNS}
+
+
+def groups(cases):
+    return {str(case.groups) for case in cases.values()}
+
+
+@pytest.mark.parametrize("part", sorted(PUBLISHED.glob("*.h5")), ids=lambda path: path.stem)
+def test_what_is_published_is_its_design(monkeypatch, part):
+    """Pairs, flow curves, depths, unloadings and settings: all are in the id of a case."""
+    with opened_part(part) as file:
+        monkeypatch.setattr(fem, "NUMERICS_VERSION", int(file.attrs["numerics_version"]))
+        assert set(texts_of(file, "id")) == set(distinct_cases(design_named(file.attrs["design"])))
+
+
+def test_the_full_design_has_more_combinations_than_the_thesis(cases):
+    names = {c.name for c in cases["full"].values()}
+    # the pair of chapter 3 is the only one that is solved twice, to two depths
+    assert {"chapter-3", "chapter-3-to-2450"} <= names
+    assert len(groups(cases["full"])) == len(cases["full"]) - 1 >= 432
+    assert len(cases["space"]) >= 256
+    # the thesis: at least 30 ratios of five cases, three of 27 sets
+    assert len(set(RATIOS)) >= 30
+    assert sum(0.9 <= r <= 1.7 for r in RATIOS) >= 15
+    assert len(cases["thesis"]) >= 5 * 30 + 27 * 3 - 6
+
+
+def test_validation_shares_no_pair_and_covers_the_hard_parts(cases):
+    others = groups(cases["thesis"]) | groups(cases["space"])
+    assert not groups(cases["validation"]) & others
+    others |= groups(cases["validation"]) | groups(cases["near-equal"])
+    assert not groups(cases["validation-2"]) & others
+    for name in ("hardening", "plateau"):
+        assert not set(cases[f"validation-{name}"]) & set(cases[name])
+    pairs = [case.pair for case in cases["validation"].values()]
+    assert len(pairs) >= 48
+    assert sum(0.85 <= p.Sy_ratio <= 1.7 for p in pairs) >= 16
+    assert sum(p.E_reduced / p.Sy_min < 60 for p in pairs) >= 8
+
+
+def test_a_run_that_is_stopped_early_has_the_thesis_first(cases):
+    names = [case.name for case in cases["full"].values()]
+    order = [name.split("-")[0] for name in names]
+    assert order.index("space") == 263
+    assert order.index("validation") == 263 + 256
+    assert names[:3] == ["figure-2.2", "figure-2.3", "figure-2.4"]
+    # half of Table 2.1 leaves no gap larger than 0.15 in the steep part
+    ratios = [c.pair.Sy_ratio for c in cases["thesis"].values() if c.name.startswith("table")]
+    steep = sorted({round(r, 3) for r in ratios[: len(ratios) // 2] if 0.85 < r < 1.75})
+    assert max(b - a for a, b in itertools.pairwise(steep)) < 0.151
+    assert {0.1, 1.0, 10.0} <= {round(r, 6) for r in ratios[:45]}
+
+
+@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 4)])
+def test_the_parts_of_a_design_are_the_design(name, count):
+    parts = [distinct_cases(design_named(f"{name}-{k + 1}")) for k in range(count)]
+    for one, other in itertools.combinations(parts, 2):
+        assert not one.keys() & other.keys()
+    together = list(itertools.chain.from_iterable(parts))
+    assert together == list(distinct_cases(design_named(name)))
+
+
+def test_a_challenge_follows_from_its_checksum_and_shares_no_pair(cases):
+    digest = "0123456789abcdef" * 4
+    one, other = challenge_cases(digest), challenge_cases(digest[1:])
+    assert [c.id for c in one] == [c.id for c in challenge_cases(digest[:12])]
+    assert len({c.id for c in (*one, *other)}) == 48
+    assert all(c.name.split("-")[1] == digest[:12] for c in one)
+    drawn = {str(c.groups) for c in cases["challenge"].values()}
+    assert len(drawn) == 24
+    assert not drawn & groups(cases["full"])

@@ -1,13 +1,21 @@
-"""A run: identity of cases, resuming, damage, and death of workers and coordinator."""
+"""A run: identity of cases, resuming, damage, full disks, death of workers and coordinator."""
 
 import errno
 import json
+import math
 import multiprocessing
+import operator
 import os
+import shutil
 import signal
+import subprocess
+import sys
+import threading
+import time
 from dataclasses import replace
 
 import h5py
+import made_cases
 import meshio
 import numpy as np
 import pytest
@@ -24,8 +32,10 @@ from dentscope.campaigns import (
     read_curves,
     run_design,
     status_of,
+    workers,
 )
 from dentscope.campaigns.executor import Ended
+from dentscope.campaigns.workers import answers
 from dentscope.core import COMPLETED, Ending, InputError, Outcome
 from dentscope.core.flow import Flow, Heating, Rate, swift
 from dentscope.core.output import cannot_write
@@ -335,3 +345,126 @@ def test_a_dying_worker_costs_no_case(tmp_path):
         assert item.solution is not None, item.message
     assert killed
     assert sorted(ended) == sorted(cases)
+
+
+MADE = os.path.dirname(made_cases.__file__)
+
+# the product's store and main path with a solver that takes no time: writing is what is tested
+WRITER = """
+import resource, signal, sys, time
+from pathlib import Path
+import numpy as np
+from dentscope.campaigns import Design, run_design
+from dentscope.campaigns.executor import Ended
+sys.path.append(sys.argv.pop(1))
+from made_cases import case_of, solution_of
+
+if len(sys.argv) > 4:
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[4]), resource.RLIM_INFINITY))
+
+def made():
+    return tuple(case_of(f"c{i}", Sy=4e8 + 1e5 * i) for i in range(int(sys.argv[2])))
+
+class Quick:
+    workers = 1
+    def run(self, cases, *, time_limit_s):
+        for key, case in cases.items():
+            line = np.random.default_rng(0).random(int(sys.argv[3]))
+            yield Ended(key, solution_of(case, line=line))
+
+try:
+    run_design(Design("d", "", made), Path(sys.argv[1]), executor=Quick(), time_limit_s=1.0,
+               report=lambda step: print("STORED", step.case.name, flush=True))
+except Exception as error:
+    print(type(error).__name__, error, flush=True)
+    sys.exit(2)
+"""
+
+
+def start(path, n=200, values=48, limit=()):
+    return subprocess.Popen(
+        [sys.executable, "-c", WRITER, MADE, *map(str, (path, n, values, *limit))],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_readers_and_the_writer_wait_for_each_other(tmp_path):
+    path = tmp_path / "run"
+    process = start(path, n=40)
+    seen = [0]
+    while process.poll() is None:
+        if path.exists():
+            seen.append(len(Store(path).statuses()))
+    process.stdout.close()
+    assert process.returncode == 0
+    assert seen == sorted(seen)
+    assert len(Store(path).statuses()) == 40
+
+
+@pytest.mark.skipif(
+    os.geteuid() != 0 or shutil.which("mount") is None, reason="a small disk needs root"
+)
+def test_a_full_disk_keeps_what_is_there(tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=6m", "none", str(disk)]
+    if subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("mounting is not allowed here")
+    try:
+        process = start(disk / "run", n=200, values=5000)
+        *lines, last = process.communicate()[0].splitlines()
+        assert process.returncode == 2
+        assert last.startswith("InputError")
+        assert "the disk is full" in last
+        assert len(lines) > 1
+        assert len(read_curves(disk / "run")) == len(lines)
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_file_that_may_not_grow_keeps_what_is_there(tmp_path):
+    path = tmp_path / "run"
+    start(path, n=3).communicate()
+    process = start(path, n=5, values=5000, limit=(100_000,))
+    *lines, last = process.communicate()[0].splitlines()
+    assert process.returncode == 2
+    assert "a file may not be larger here; all completed cases are kept" in last
+    assert lines == []
+    assert len(read_curves(path)) == 3
+
+
+def test_each_order_has_its_answer_and_its_own_death(monkeypatch):
+    monkeypatch.setattr(workers, "_TRIES", 1)
+    orders = {
+        "kills": (signal.raise_signal, signal.SIGKILL),
+        "root": (math.sqrt, 9.0),
+        "error": (int, "three"),
+        "lock": (threading.Lock,),
+        "name": (str.upper, "a"),
+    }
+    found = dict(answers(operator.call, orders, workers=2, timeout_s=300.0))
+    assert found.keys() == orders.keys()
+    assert (found["root"].value, found["name"].value) == (3.0, "A")
+    assert found["error"].message.startswith("ValueError: invalid literal")
+    assert "pickle" in found["lock"].message
+    assert found["kills"].message == "the worker died 1 times"
+    assert not multiprocessing.active_children()
+
+
+@pytest.mark.parametrize("end", ["killed", "hung", "closed"])
+def test_a_worker_that_ends_or_hangs_costs_no_other_order(monkeypatch, end):
+    orders = {"a": (math.sqrt, 9.0), "b": (time.sleep, 3600.0 * (end != "killed"))}
+    found = answers(operator.call, orders, workers=1, timeout_s=300.0)
+    assert next(found)[1].value == 3.0
+    (worker,) = multiprocessing.active_children()
+    if end == "killed":
+        os.kill(worker.pid, signal.SIGKILL)
+        assert next(found) == ("b", workers.Answer())
+    elif end == "hung":
+        now = time.monotonic
+        monkeypatch.setattr(workers.time, "monotonic", lambda: now() + 1e4)
+        assert "hung" in next(found)[1].message
+    found.close()
+    assert not multiprocessing.active_children()

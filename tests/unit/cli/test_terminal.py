@@ -1,4 +1,4 @@
-"""What a terminal shows: help of every command at any width, units, nothing cut, completion."""
+"""What a terminal shows: help at any width, sound where output is closed or full, the doctor."""
 
 import io
 import os
@@ -10,8 +10,12 @@ import pytest
 import typer
 from dentscope import __version__
 from dentscope.cli import app as assembly
+from dentscope.cli import doctor
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
-from dentscope.cli.shared.terminal import parts, say, show_table
+from dentscope.cli.doctor import EnvironmentFinding
+from dentscope.cli.shared.terminal import parts, say, show_table, tell_first_use
+from dentscope.core import Ending, InputError, Outcome
+from made_processes import python
 from rich.console import Console
 
 COMMAND = typer.main.get_command(assembly.app)
@@ -131,3 +135,114 @@ def test_prose_is_wrapped_on_a_terminal_and_whole_in_a_file(monkeypatch, capsys,
         assert told == "    61 %  roughness: asperities give way\n      before the bulk\n"
     else:
         assert told == f"{line}\n"
+
+
+def _run(command: str, cwd: Path, **env: str) -> subprocess.CompletedProcess[str]:
+    program = f'"{sys.executable}" -P -m dentscope {command}'
+    return subprocess.run(
+        ["bash", "-c", program], cwd=cwd, env=os.environ | env, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+
+
+def test_a_full_output_is_one_line(tmp_path: Path) -> None:
+    answer = _run("laws list > /dev/full", tmp_path)
+    assert answer.returncode == 2
+    assert answer.stderr == "standard output: No space left on device\n"
+
+
+@pytest.mark.parametrize("end", [">&-", "| true"])
+def test_files_are_written_whoever_reads(tmp_path: Path, end: str) -> None:
+    answer = _run(f"impact --new ball {end}", tmp_path)
+    assert answer.stderr == ""
+    assert (tmp_path / "ball.toml").exists()
+
+
+def test_no_width_and_no_colour(tmp_path: Path) -> None:
+    answer = _run("laws list", tmp_path, COLUMNS="0", NO_COLOR="1", MPLBACKEND="nonsense")
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert "ghaednia" in answer.stdout
+    assert "\x1b" not in answer.stdout
+
+
+def test_it_is_said_until_the_code_is_there(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    tell_first_use()
+    assert capsys.readouterr().err.startswith("first use: compiling")
+    folder = tmp_path / "walk_0"
+    folder.mkdir()
+    (folder / "compiled._impacts-131.py311.nbi").touch()
+    tell_first_use()
+    assert capsys.readouterr().err == ""
+
+
+def test_the_name_is_that_of_the_compiled_integrator() -> None:
+    from dentscope.dynamics.stepping import compiled
+
+    assert compiled.__name__.endswith(".compiled")
+    assert compiled._impacts.py_func.__name__ == "_impacts"
+
+
+def test_help_loads_no_numerics():
+    heavy = "numpy scipy numba gmsh skfem pyvista matplotlib h5py".split()
+    program = (
+        f"import sys, dentscope.cli;print(*[name for name in {heavy!r} if name in sys.modules])"
+    )
+    assert python("-c", program, check=True).stdout.strip() == ""
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "line"),
+    [
+        (InputError("-1", source="a.toml", key="nu"), 2, "a.toml: nu: -1\n"),
+        (KeyboardInterrupt(), 130, "stopped\n"),
+    ],
+)
+def test_how_the_command_line_ends_early(monkeypatch, capsys, raised, code, line):
+    def end(**options):
+        raise raised
+
+    monkeypatch.setattr(assembly, "app", end)
+    assert assembly.run([]) == code
+    assert capsys.readouterr().err == line
+
+
+def test_a_case_that_does_not_converge_ends_with_its_reason_and_code_3(
+    monkeypatch, capsys, tmp_path
+):
+    from dentscope import fem
+
+    text = (
+        "radius_m = 0.01\n[sphere]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 1e9\n"
+        "[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 1e9\n[load]\nmax_delta_over_R = 0.01\n"
+    )
+    (tmp_path / "case.toml").write_text(text)
+
+    class Stopped:
+        outcome = Outcome(Ending.NOT_CONVERGED, "first step failed.", "Take smaller steps.")
+
+        class loading:
+            delta = ()
+
+    monkeypatch.setattr(fem, "solve", lambda *a, **k: Stopped())
+    code = assembly.run(["case", str(tmp_path / "case.toml"), "--out", str(tmp_path / "out")])
+    shown = " ".join(capsys.readouterr().out.split())
+    assert code == 3
+    assert shown == "not-converged: first step failed. Take smaller steps."
+
+
+@pytest.mark.parametrize(("needed", "code"), [(True, doctor.EXIT_ENVIRONMENT), (False, 0)])
+def test_doctor_names_the_remedy(monkeypatch, capsys, needed, code):
+    lack = EnvironmentFinding(
+        "gmsh", "no libGLU", fine=False, needed=needed, remedy="install libglu1-mesa"
+    )
+    monkeypatch.setattr(doctor, "examine", lambda: (EnvironmentFinding("processors", "2"), lack))
+    assert doctor.doctor() == code
+    assert "-> install libglu1-mesa" in capsys.readouterr().out
+
+
+def test_doctor_looks_at_this_environment():
+    findings = {finding.name: finding for finding in doctor.examine()}
+    assert findings["gmsh"].fine
+    assert "python" in findings["versions"].state
+    assert findings["compiled code"].fine

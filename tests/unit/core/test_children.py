@@ -6,6 +6,7 @@ from pathlib import Path
 
 import dentscope
 import pytest
+from made_files import put
 from made_processes import python
 
 ROOT = Path(dentscope.__file__).parent
@@ -39,36 +40,33 @@ main()
 @pytest.fixture
 def trapped(tmp_path: Path) -> Path:
     folder = tmp_path / "downloaded"
-    (folder / "dentscope").mkdir(parents=True)
     trap = f"open({str(tmp_path / 'ran')!r}, 'w').write(__file__)\nraise SystemExit(99)\n"
-    for name in TRAPS:
-        (folder / f"{name}.py").write_text(trap)
-    (folder / "dentscope" / "__init__.py").write_text(trap)
-    (folder / "matplotlibrc").write_text("backend: module://numpy\nnonsense\n")
-    precious = tmp_path / "precious"
-    precious.write_text("mine")
+    for name in (*TRAPS, "dentscope/__init__"):
+        put(folder / f"{name}.py", trap)
+    put(folder / "matplotlibrc", "backend: module://numpy\nnonsense\n")
+    precious = put(tmp_path / "precious", "mine")
     (folder / ".numba_config.yaml").write_text(
         f"chrome_trace: {precious}\ncache_locator_classes: numpy.L\ndisable_jit: 1\n"
     )
     return folder
 
 
-def _run(arguments, cwd):
+def run_in(trapped, *words, script=""):
+    """What a Python says, started in the trapped folder; a script lies in another one."""
+    if script:  # as the installed command
+        words = (put(trapped.parent / "bin" / "script.py", script),)
     env = {k: v for k, v in os.environ.items() if k not in ("PYTHONSAFEPATH", "PYTHONPATH")}
-    return python(*arguments, cwd=cwd, env=env)
+    answer = python(*words, cwd=trapped, env=env)
+    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
+    assert answer.returncode == 0, answer.stderr
+    assert (trapped.parent / "precious").read_text() == "mine"
+    return answer.stderr
 
 
 @pytest.mark.parametrize("way", WAYS)
 def test_no_child_takes_code_from_the_current_folder(trapped: Path, way: str) -> None:
-    # as the installed command: a script of another folder
-    script = trapped.parent / "bin" / "script.py"
-    script.parent.mkdir()
     body = WAYS[way].replace("\n", "\n    ")
-    script.write_text(f"if __name__ == '__main__':\n    pass{body}\n")
-    answer = _run([str(script)], trapped)
-    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
-    assert answer.returncode == 0, answer.stderr
-    assert (trapped.parent / "precious").read_text() == "mine"
+    run_in(trapped, script=f"if __name__ == '__main__':\n    pass{body}\n")
 
 
 def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
@@ -76,10 +74,7 @@ def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
     for name in ("dentscope/__init__", "threading", "pickle"):
         (trapped / f"{name}.py").unlink()
     (trapped / "dentscope").rmdir()
-    answer = _run(["-m", "dentscope", "laws", "list"], trapped)
-    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
-    assert answer.returncode == 0, answer.stderr
-    assert (trapped.parent / "precious").read_text() == "mine"
+    run_in(trapped, "-m", "dentscope", "laws", "list")
 
 
 LINES = (
@@ -129,15 +124,10 @@ if __name__ == "__main__":
 
 def test_no_command_takes_code_from_the_current_folder(trapped: Path) -> None:
     pulse = "".join(f"{1e-5 * k},{300.0 * (50 < k < 150)}\n" for k in range(400))
-    (trapped / "pulse.csv").write_text("time_s,force_N\n" + pulse)
-    script = trapped.parent / "bin" / "script.py"
-    script.parent.mkdir()
-    script.write_text(ALL)
-    answer = _run([str(script)], trapped)
-    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
-    assert answer.returncode == 0, answer.stderr
-    assert "Traceback" not in answer.stderr
-    assert "Warning" not in answer.stderr
+    put(trapped / "pulse.csv", "time_s,force_N\n" + pulse)
+    told = run_in(trapped, script=ALL)
+    assert "Traceback" not in told
+    assert "Warning" not in told
 
 
 def test_pythons_are_started_in_one_place() -> None:

@@ -1,14 +1,20 @@
-"""Compiled code is kept apart for each state of the source."""
+"""Compiled code: kept apart for each state of the source; arrays without a count of references."""
 
 import ast
+import gc
 import os
 import shutil
 import stat
+import sys
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 from dentscope.core import compiled
 from dentscope.core.compiled import compiled_sources, source_digest
+from dentscope.core.unowned import unowned
 from made_processes import python
+from numba import njit
 
 
 def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
@@ -122,3 +128,42 @@ def test_without_a_home_the_next_command_finds_what_was_compiled(tmp_path, monke
     first = compiled.cache_folder("compiled-1")
     assert first.parent.parent == tmp_path
     assert compiled.cache_folder("compiled-1") == first
+
+
+class Rows(NamedTuple):
+    x: np.ndarray
+    inner: tuple
+
+
+@njit
+def _row(x, k):
+    return x[k]
+
+
+@njit
+def _doubled(rows, out, factor):
+    rows, out = unowned(rows), unowned(out)
+    for k in range(rows.x.shape[0]):
+        row, to = _row(rows.x, k), out[k]
+        for j in range(row.shape[0]):
+            to[j] = factor * row[j] + rows.inner[0][k] + rows.inner[1]
+
+
+def test_a_kernel_reads_and_writes_what_its_caller_holds():
+    x, more = np.arange(12.0).reshape(4, 3), np.array([1.0, 2.0, 3.0, 4.0])
+    out = np.empty((4, 3))
+    _doubled(Rows(x, (more, 10)), out, 2.0)
+    assert np.array_equal(out, 2.0 * x + more[:, None] + 10.0)
+
+
+def test_nothing_is_kept_or_freed_too_soon():
+    x, more, out = np.ones((200, 3)), np.zeros(200), np.empty((200, 3))
+    held = [sys.getrefcount(array) for array in (x, more, out)]
+    for _ in range(50):
+        _doubled(Rows(x, (more, 1)), out, 1.0)
+    assert [sys.getrefcount(array) for array in (x, more, out)] == held
+    gc.collect()
+    other = np.full((200, 3), 7.0)  # would take memory that was freed too soon
+    assert np.all(x == 1.0)
+    assert np.all(out == 2.0)
+    assert np.all(other == 7.0)

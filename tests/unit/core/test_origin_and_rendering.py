@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from dentscope.core import InputError, InputErrors, Material, Pair, provenance, rendering
+from dentscope.core import Material, Pair, provenance, rendering
 
 
 def test_digest_of_a_file_is_the_published_one(tmp_path):
@@ -35,13 +35,6 @@ def test_an_edited_source_is_another_one(tmp_path, monkeypatch):
 def test_numbers_that_are_not_finite_have_an_identity():
     assert provenance.content_id(math.inf) != provenance.content_id(-math.inf)
     assert provenance.content_id(math.nan) == provenance.content_id(math.nan)
-
-
-def test_error_carries_its_parts_and_several_are_told_together():
-    one = InputError("-1 is negative", source="a.toml", key="nu", allowed="0 <= nu < 0.5")
-    both = InputErrors((one, InputError("missing", key="E_Pa")))
-    assert str(one) == "a.toml: nu: -1 is negative (allowed: 0 <= nu < 0.5)"
-    assert str(both).splitlines() == [str(one), "E_Pa: missing"]
 
 
 def test_rigid_partner_leaves_the_whole_approach_to_the_other_body():

@@ -1,6 +1,5 @@
-"""The whole way from a folder to a verdict, on small sets of the proof's generators."""
+"""The whole way from a folder to a verdict, and the metal that it starts from."""
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -10,14 +9,26 @@ import numpy as np
 import pytest
 from dentscope.cli.diagnose import report_folder
 from dentscope.core import InputError
+from dentscope.core.inputs.flow_curve import SPECIMENS
 from dentscope.discrepancy import diagnose
+from dentscope.discrepancy.baseline import solve
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
+from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.report import story_of
+from dentscope.discrepancy.report.series import points_of
+from dentscope.dynamics import Approach, Scene, Striker, strike
+from dentscope.fitting.hardening import hardening_records
+from dentscope.fitting.table import read_sources
+from dentscope.models.table import PairTable, table_law
+from dentscope.models.uncertainty import METAL, WITH_CURVE
 from dentscope.recordings import read
 from dentscope.recordings.shipped import FOLDER
 from dentscope.studies.proof.generators import folder, truth
+from made_cases import table_of
+from made_files import rows_of
 from made_processes import python
+from made_sets import made_set
 
 KEYS = """format set seed version audit verdict mechanisms wrong_inputs family
 alternatives inclusion probabilities scores located parameters nuisance_pulls surprise
@@ -75,8 +86,7 @@ def _is_readable(out: Path, page: Any) -> None:
     for part in ("probability", "Measured beside simulated", "What to do next"):
         assert part in page.seen
     points = json.loads((out / "report.json").read_text())["points"]
-    with (out / "report.csv").open() as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(out / "report.csv")
     assert [float(r["measured"]) for r in rows] == [p["measured"] for p in points]
     drawn = [a for a in page.of("g") if a.get("class") == "point"]
     assert len(drawn) >= len(points) > 5
@@ -163,42 +173,22 @@ def test_repeats_that_scatter_beyond_their_stated_noise_are_all_kept(tmp_path: P
     assert cells.value == pytest.approx(np.mean(e), rel=1e-9)
 
 
-ONE_ROD = """format = "recording-set/1"
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.0e8
-density_kg_m3 = 7850
-[strikers.rod]
-shape = "rod"
+ROD = """shape = "rod"
 tip_radius_m = 9.0e-3
 radius_m = 9.0e-3
 length_m = 0.3
 mass_kg = 0.6193
-density_kg_m3 = 7800
 E_Pa = 2.0e11
 nu = 0.3
 Sy_Pa = 7.5e8
-[noise]
-restitution = 0.01
-permanent_depth_m = 1.0e-6
-impact_speed_relative = 0.005
 """
-
-
-def _one_rod(folder: Path, rows: str) -> None:
-    folder.mkdir()
-    (folder / "set.toml").write_text(ONE_ROD)
-    (folder / "trials.csv").write_text(rows)
+NOISE = "restitution = 0.01\npermanent_depth_m = 1.0e-6\nimpact_speed_relative = 0.005\n"
 
 
 def test_one_trial_is_too_little_to_say_anything(tmp_path: Path) -> None:
-    _one_rod(
-        tmp_path / "mine",
-        "trial,striker,angle_deg,drop_height_m,restitution,permanent_depth_m\n"
-        "T01,rod,90,0.05,0.5,95e-6\n",
-    )
-    verdict = diagnose(read(tmp_path / "mine"))
+    numbers = {"restitution": [0.5], "permanent_depth_m": [95e-6]}
+    given = made_set(tmp_path, ROD, noise=NOISE, angle_deg=[90], drop_height_m=[0.05], **numbers)
+    verdict = diagnose(given)
     found = json.loads(json.dumps(verdict.to_dict(), allow_nan=False))
     assert found["verdict"] == "undetermined"
     assert found["notes"][0].startswith("too few")
@@ -208,6 +198,148 @@ def test_one_trial_is_too_little_to_say_anything(tmp_path: Path) -> None:
 
 
 def test_trials_without_a_measured_number_are_refused_in_one_line(tmp_path: Path) -> None:
-    _one_rod(tmp_path / "mine", "trial,striker,angle_deg,drop_height_m\nT01,rod,90,0.05\n")
     with pytest.raises(InputError, match=r"no measured number .* one or more of restitution"):
-        diagnose(read(tmp_path / "mine"))
+        diagnose(made_set(tmp_path, ROD, noise=NOISE, angle_deg=[90], drop_height_m=[0.05]))
+
+
+DATA = Path(__file__).parents[3] / "data" / "campaign" / "validation-hardening-1.h5"
+BALL, FLAT = "ball.csv", "flat.csv"
+READ_TO = {"restitution": 0.004, "permanent_depth_m_relative": 0.008}
+
+
+@pytest.fixture(scope="module")
+def solved() -> PairTable:
+    """Finite elements of a flat that hardens, which no fit has read."""
+    records = hardening_records(read_sources([DATA]), held_out=True)
+    record = next(r for r in records if r.case.name.endswith("-05"))
+    return table_of(record, error=1e-3)
+
+
+def set_of(folder, table, *, curves, stated=1.0, fastest=20.0):
+    pair, R = table.pair, 5e-3
+    mass = 4.0 / 3.0 * math.pi * R**3 * 7800.0
+    ball = Striker(mass=mass, tip_radius=R, length=0.0, radius=R, inertia=0.4 * mass * R**2)
+    law, own = table_law([table], name="truth"), type(pair)(pair.sphere, pair.flat, R)
+    rows = ["trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m"]
+    for k, v in enumerate(np.geomspace(1.0, fastest, 6)):
+        hit = strike(Scene(law, own, ball, Approach(v)))
+        rows.append(f"{k},ball,90,{v:.6g},{hit.restitution:.6g},{hit.residual_flat_m:.6g}")
+    folder.mkdir()
+    (folder / "trials.csv").write_text("\n".join(rows) + "\n")
+
+    def body(metal, name: str) -> str:
+        if metal.flow is None:
+            return f"E_Pa = {metal.E}\nnu = {metal.nu}\nSy_Pa = {metal.Sy}\n"
+        strain = np.append(0.0, np.geomspace(1e-4, 1.0, 40))
+        lines = ["plastic_strain,true_stress_Pa"]
+        lines += [f"{p:.6g},{metal.flow.curve(p):.8g}" for p in strain]
+        text = f"E_Pa = {metal.E}\nnu = {metal.nu}\n"
+        if curves:
+            (folder / name).write_text("\n".join(lines) + "\n")
+            text += f'flow_curve = "{name}"\n'
+        if stated:
+            Sy = stated * metal.flow.curve(0.002)
+            text += f"Sy_Pa = {{ value = {Sy}, std = {0.05 * Sy} }}\n"
+        return text
+
+    noise = "".join(f"{k} = {v}\n" for k, v in READ_TO.items())
+    (folder / "set.toml").write_text(
+        'format = "recording-set/1"\nname = "flow"\n'
+        f'[noise]\n{noise}[target]\nshape = "flat"\n{body(pair.flat, FLAT)}'
+        f'[strikers.ball]\nshape = "sphere"\ntip_radius_m = {R}\ndensity_kg_m3 = 7800\n'
+        f"{body(pair.sphere, BALL)}"
+    )
+    return folder
+
+
+def misfit(problem) -> float:
+    """Rms miss of the baseline as stated, in standard errors."""
+    base = fit(Simulator(problem), ())
+    r = base.residual
+    return math.sqrt(float(r @ np.linalg.solve(base.linear.noise, r)) / len(r))
+
+
+def test_a_baseline_that_follows_the_curves_meets_a_metal_that_hardens(tmp_path, solved):
+    plain = problem_of(read(set_of(tmp_path / "plain", solved, curves=False)))
+    curved = problem_of(read(set_of(tmp_path / "curved", solved, curves=True)), law="fitted")
+    assert plain.law_name == "fitted"
+    assert curved.law_name == "fitted, at hardening"
+    assert misfit(curved) < 0.15 * misfit(plain)
+    assert curved.error.parts["force"][1] < plain.error.parts["force"][1]
+    assert WITH_CURVE["crater"] < METAL["crater"]
+
+
+def test_as_stated_is_the_simulation_and_not_a_line_through_the_fit(tmp_path, solved):
+    found = diagnose(read(set_of(tmp_path / "set", solved, curves=False)))
+    problem = found.problem
+    stated = Simulator(problem).predict((), [Point(np.zeros(problem.n_z))])[0]
+    assert np.array_equal(found.stated, stated)
+    points = {(p.observable, p.condition): p.as_stated for p in points_of(found)}
+    cells = problem.cells
+    for k, (name, c) in enumerate(zip(cells.observable, cells.condition, strict=True)):
+        if name == "restitution":
+            assert points[name, c + 1] == pytest.approx(stated[k], rel=1e-9)
+    r = (cells.value - stated) / np.sqrt(np.diag(found.ranking.base.linear.noise))
+    assert found.misfit["as_stated"] == pytest.approx(float(r @ r), rel=0.3)
+
+
+def test_a_strength_read_from_a_curve_is_that_of_a_specimen(tmp_path, solved):
+    found = read(set_of(tmp_path / "read", solved, curves=True, stated=0.0))
+    Sy = found.setup.target.Sy_Pa
+    assert Sy.value == pytest.approx(solved.pair.flat.flow.curve(0.002), rel=0.01)
+    assert Sy.std == pytest.approx(SPECIMENS * Sy.value)
+
+
+def test_a_curve_is_scaled_to_a_stated_strength_and_a_note_says_so(tmp_path, solved):
+    found = read(set_of(tmp_path / "off", solved, curves=True, stated=1.2))
+    problem = problem_of(found, law="fitted")
+    assert any("scaled to the stated" in note for note in problem.notes)
+    law = problem.laws["ball"]
+    curve = solved.pair.flat.flow.curve
+    assert law.at.flat.flow.curve(0.1) == pytest.approx(1.2 * curve(0.1), rel=0.01)
+
+
+def test_the_own_pair_is_solved_once_and_kept(tmp_path, solved, monkeypatch):
+    found = read(set_of(tmp_path / "own", solved, curves=True))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    asked = []
+
+    def of_the_elements(pair, low, high, *, progress):
+        asked.append(high)
+        return PairTable(pair, solved.curve, solved.turns)
+
+    monkeypatch.setattr(solve, "solved_table", of_the_elements)
+    # a flow curve is enough to have the pair solved
+    problem = problem_of(found)
+    assert problem.law_name.endswith("finite elements of the pair")
+    # what is left is that these turning points are two, not five
+    assert misfit(problem) < 2.0
+    assert problem.error.parts["force"][0] < 2e-3
+    again = problem_of(found, law="table")
+    assert len(asked) == 1
+    assert misfit(again) == pytest.approx(misfit(problem), rel=1e-6)
+    kept = next((tmp_path / "cache").rglob("pairs/*.json"))
+    kept.write_text(kept.read_text()[:500])
+    problem_of(found)
+    assert len(asked) == 2
+    assert problem_of(found, law="fitted").law_name == "fitted, at hardening"
+    assert len(asked) == 2
+
+
+def test_a_strength_that_is_assumed_is_not_worth_a_solve(tmp_path, solved, monkeypatch):
+    monkeypatch.setattr(solve, "solved_table", lambda *_, **__: pytest.fail("solved"))
+    folder = set_of(tmp_path / "bare", solved, curves=False, stated=0.0)
+    problem = problem_of(read(folder), law="table")
+    assert problem.law_name == "fitted"
+    assert any("target.Sy_Pa is not stated" in note for note in problem.notes)
+
+
+@pytest.mark.fe
+def test_finite_elements_take_the_place_of_the_closed_form(tmp_path, solved, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    said = []
+    found = read(set_of(tmp_path / "fe", solved, curves=True, fastest=5.0))
+    problem = problem_of(found, progress=said.append)
+    assert any(line.endswith("%") for line in said)
+    assert not any("not solved" in note for note in problem.notes)
+    assert misfit(problem) < 2.5

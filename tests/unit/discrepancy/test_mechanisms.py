@@ -11,8 +11,9 @@ from dentscope.core.inputs.flow_curve import Rise
 from dentscope.dynamics import Approach, Friction, Scene, Striker, scene_of, strike
 from dentscope.dynamics.force import F_FORCE
 from dentscope.dynamics.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
+from dentscope.dynamics.mechanisms.roughness import Layer
 from dentscope.dynamics.strength import strength_table
-from dentscope.models import LAWS
+from dentscope.models import LAWS, law_named
 from dentscope.models.anchored import anchored
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -248,3 +249,44 @@ def test_flow_curves_at_several_rates_bound_the_rate_law(rises, low, high) -> No
     rise, *others = rate.ranges([(scene(), Surroundings(rises=rises))])
     assert (rise.low, rise.high) == pytest.approx((low, high), rel=0.03)
     assert others == list(rate.parameters[1:])
+
+
+PAIR = Pair(Material(E=208e9, nu=0.3, Sy=2e9), Material(E=69e9, nu=0.33, Sy=280e6), 1e-3)
+TABLE = strength_table(law_named("fitted"), PAIR)
+FORCE = np.exp(TABLE.stated.force)
+
+
+def layer(sigma=1e-6, start=0.1, kept=0.5):
+    return Layer.of(TABLE, sigma, start, kept)
+
+
+@pytest.mark.parametrize("start", [0.01, 0.3, 3.0])
+def test_at_one_force_the_layer_adds_its_closure(start):
+    """To what interpolation between nodes 40 % apart allows."""
+    sigma = 1e-6
+    rough = layer(sigma=sigma, start=start).force * FORCE
+    scale = start * np.interp(sigma, TABLE.depth, FORCE)
+    for k in (15, 20, 25):
+        closure = sigma * np.log1p(FORCE[k] / scale)
+        there = np.exp(
+            np.interp(np.log(TABLE.depth[k] + closure), np.log(TABLE.depth), np.log(rough))
+        )
+        assert there == pytest.approx(FORCE[k], rel=0.03)
+
+
+def test_a_vanishing_layer_changes_nothing():
+    thin = layer(sigma=1e-12)
+    deep = TABLE.depth > 1e-8
+    assert np.allclose(thin.force[deep], 1.0, atol=2e-3)
+    assert np.allclose(thin.recovery[deep], 1.0, atol=2e-3)
+
+
+def test_asperities_that_stay_flattened_give_back_less_and_leave_more():
+    elastic, flat = layer(kept=0.0), layer(kept=1.0)
+    assert np.all(flat.recovery <= elastic.recovery + 1e-12)
+    left = {
+        name: one.dent * (TABLE.depth - one.recovery * np.exp(TABLE.stated.recovery))
+        for name, one in (("elastic", elastic), ("flat", flat))
+    }
+    middle = slice(12, 30)
+    assert np.all(left["flat"][middle] > left["elastic"][middle])

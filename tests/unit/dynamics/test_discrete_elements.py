@@ -1,12 +1,11 @@
 """Parameters for discrete-element codes: Hertz's impact, exact balances, and LAMMPS itself."""
 
-import csv
 import math
 
 import pytest
 import tomlkit
-from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
+from dentscope.core.inputs.templates import template
 from dentscope.dynamics import strike
 from dentscope.dynamics.export.collisions import TSUJI, damping_for
 from dentscope.dynamics.export.discrete_elements import substitutes, two_balls
@@ -14,6 +13,7 @@ from dentscope.dynamics.export.lammps import lammps_lines
 from dentscope.models import LAWS
 from dentscope.start.ball_file import read_ball
 from made_blows import ball_setup
+from made_files import put, rows_of
 from scipy.integrate import solve_ivp
 
 STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
@@ -74,15 +74,12 @@ def test_a_damping_that_cannot_is_left_out_and_the_others_get_theirs():
 
 
 def test_command_writes_table_and_fragments(tmp_path, errs, prints):
-    file = tmp_path / "pair.toml"
-    file.write_text(
-        "radius_m = 0.005\n[sphere]\nE_Pa = 200e9\nnu = 0.3\nSy_Pa = 600e6\n"
-        "density_kg_m3 = 7800\n[flat]\nE_Pa = 210e9\nnu = 0.3\nSy_Pa = 1500e6\n"
-        "[load]\nmax_delta_over_R = 0.01\n"
-    )
-    out = tmp_path / "dem"
+    text = ("radius_m = 0.005\n[sphere]\nE_Pa = 200e9\nnu = 0.3\nSy_Pa = 600e6\n"
+            "density_kg_m3 = 7800\n[flat]\nE_Pa = 210e9\nnu = 0.3\nSy_Pa = 1500e6\n"
+            "[load]\nmax_delta_over_R = 0.01\n")  # fmt: skip
+    file, out = put(tmp_path / "pair.toml", text), tmp_path / "dem"
     assert "hertz-tsuji-softened" in prints("export", "dem", file, "--speed", "0.5,3", "--out", out)
-    table = list(csv.DictReader((out / "dem.csv").read_text().splitlines()))
+    table = rows_of(out / "dem.csv")
     assert len(table) == 2 * 2 * 6
     by_speed = [float(r["restitution"]) for r in table if r["model"] == "fitted"]
     assert by_speed[0] > by_speed[1]
@@ -137,17 +134,15 @@ impact_speed_m_s = { from = 0.1, to = 10, count = 21, spacing = "log" }
 
 def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, prints):
     """LAMMPS returned 0.92622, 0.69347 and 0.45486 with these parameters."""
-    file = tmp_path / "ball.toml"
-    file.write_text(BALL.replace("[strikers", "density_kg_m3 = 2700\n[strikers"))
+    text = BALL.replace("[strikers", "density_kg_m3 = 2700\n[strikers")
+    file = put(tmp_path / "ball.toml", text)
     told = prints("export", "dem", file, "--out", tmp_path)
     assert "target.E_Pa.std = 1e+09" in told
     assert "impact.support = half-space" in told
-    table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))
-    ours = {
-        float(r["speed_m_s"]): float(r["restitution"]) for r in table
-        if r["model"] == "fitted" and r["contact"] == "ball on flat"
-    }  # fmt: skip
-    assert [ours[v] for v in sorted(ours)][::3] == pytest.approx([0.9262, 0.6935, 0.4549], abs=1e-4)
+    table = rows_of(tmp_path / "dem.csv")
+    ours = [float(r["restitution"]) for r in table
+            if r["model"] == "fitted" and r["contact"] == "ball on flat"]  # fmt: skip
+    assert ours[::3] == pytest.approx([0.9262, 0.6935, 0.4549], abs=1e-4)
     walls = laws_of((tmp_path / "lammps.in").read_text(), "flat")
     assert len(walls) == 7
     # Mindlin's 8 G* over Hertz's (4/3) E', by hand, whatever the softening
@@ -198,14 +193,12 @@ GRAINS = {
 
 
 @pytest.mark.parametrize(("flat", "ball", "R", "density", "speed"), GRAINS.values(), ids=GRAINS)
-def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path):
+def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path, prints):
     ball = {"density_kg_m3": density, **ball}
-    file = tmp_path / "ball.toml"
     given = ball_setup(target=flat, ball=ball, radius=R, speed=speed).content
-    file.write_text(tomlkit.dumps(given))
-    assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
+    prints("export", "dem", put(tmp_path / "b.toml", tomlkit.dumps(given)), "--out", tmp_path)
     mass = 4.0 / 3.0 * math.pi * R**3 * density
-    table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))
+    table = rows_of(tmp_path / "dem.csv")
     lines = (tmp_path / "lammps.in").read_text()
     two = "two balls" in lines
     for wall in (True, False)[: 1 + two]:
@@ -226,24 +219,21 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
 
 
 def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, prints):
-    file = tmp_path / "ball.toml"
     curve = '[target.hardening]\nlaw = "swift"\nK_Pa = 5e8\nn = 0.2\n'
     rigid = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
-    file.write_text(rigid + 'laws = ["fitted", "hardening"]\n' + curve)
+    file = put(tmp_path / "ball.toml", rigid + 'laws = ["fitted", "hardening"]\n' + curve)
     assert read_ball(file).law == "hardening"
     told = prints("export", "dem", file, "--law", "fitted", "--out", tmp_path)
     assert "fitted takes the first strength of each metal" in told
 
 
 def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
-    file = tmp_path / "ball.toml"
     rate = "\n[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 1.9\nrate_exponent = 0.2\n"
     plain = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
     found = {}
     for name, text in (("without", plain), ("with", plain + rate)):
-        file.write_text(text)
-        ball = read_ball(file)
-        told = prints("export", "dem", file, "--out", tmp_path)
+        file = put(tmp_path / "ball.toml", text)
+        ball, told = read_ball(file), prints("export", "dem", file, "--out", tmp_path)
         assert ("no rate is stated; with that of" in told) == (name == "without")
         assert ("with strain-rate-hardening; the lines for two" in told) == (name == "with")
         (row,) = substitutes(
@@ -256,6 +246,5 @@ def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
 
 
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, errs):
-    file = tmp_path / "rod.toml"
-    assert run(["impact", "--new", "rod", str(file)]) == 0
+    file = put(tmp_path / "rod.toml", template("rod"))
     assert 'strikers.rod.shape: a rod (allowed: "sphere")' in errs("export", "dem", file)

@@ -1,6 +1,5 @@
 """Arrays of conditions: the same as one impact after another, and columns as in trials.csv."""
 
-import csv
 import math
 from pathlib import Path
 
@@ -10,20 +9,13 @@ from dentscope.cli import run
 from dentscope.core import InputError, InputErrors
 from dentscope.core.inputs.templates import template
 from dentscope.core.observables import OBSERVABLES
-from dentscope.dynamics import (
-    Approach,
-    Friction,
-    Settings,
-    Striker,
-    impacts,
-    rod_modes,
-    strike,
-)
+from dentscope.dynamics import Approach, Friction, Settings, Striker, impacts, rod_modes, strike
 from dentscope.dynamics.batch import QUICK
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.files.sweep import swept_scenes
 from dentscope.dynamics.report.band import swept_stds
 from dentscope.models import LAWS
+from made_files import rows_of
 from made_scenes import ROD, STEEL, on_iron
 
 BALL = Striker(mass=0.004, tip_radius=0.005)
@@ -99,8 +91,7 @@ def test_columns_have_the_names_of_trials_and_go_to_files(tmp_path: Path) -> Non
     assert others.isdisjoint(found.columns)
     assert [name for name in found.columns if name in in_trials] == in_trials
     found.to_csv(tmp_path / "a.csv")
-    with (tmp_path / "a.csv").open() as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(tmp_path / "a.csv")
     assert float(rows[1]["restitution"]) == found["restitution"][1]
     assert rows[0]["tangential_restitution"] == ""
     pd = pytest.importorskip("pandas")
@@ -145,8 +136,7 @@ def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) ->
     rigid = text.replace("modes = 10", "modes = 0").replace("loss_factor = 0.001", "")
     file.write_text(rigid.replace("[impact]\n", swept + 'laws = ["hertz"]\n'))
     assert run(["impact", str(file), "--exact", "--out", str(tmp_path)]) == 3
-    rows = list(csv.DictReader((tmp_path / "rod-sweep.csv").read_text().splitlines()))
-    assert rows[1]["restitution"] == ""
+    assert rows_of(tmp_path / "rod-sweep.csv")[1]["restitution"] == ""
 
 
 BODY = {"E_Pa": 2.0e11, "nu": 0.3}

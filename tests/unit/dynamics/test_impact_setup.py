@@ -1,4 +1,4 @@
-"""Set-up files: what they mean, and one line for each mistake."""
+"""Set-up files, their mechanisms, those of the inverse: what they mean, one line a mistake."""
 
 import math
 import tomllib
@@ -7,11 +7,16 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError, InputErrors
+from dentscope.core.inputs.templates import INVERSE
 from dentscope.dynamics import Impact
 from dentscope.dynamics.files.blow import blow_of
+from dentscope.dynamics.files.inverse_file import read_inverse
 from dentscope.dynamics.files.setup import DEFAULT_LAWS, read_setup, setup_of
-from dentscope.models import law_named
+from dentscope.dynamics.inverse import MeasuredScar, alpha, infer, mobility
+from dentscope.models import LAWS, law_named
 from dentscope.models.published.hertz import HERTZ
+from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
+from made_blows import BALL, blow, setup
 
 SETUP = """
 name = "rod"
@@ -252,20 +257,6 @@ def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
         read_setup(write(tmp_path, flat)).scene(HERTZ)
 
 
-def test_command_line_from_file(tmp_path, prints):
-    file = write(tmp_path, SETUP + "[sweep]\nimpact_speed_m_s = [0.5, 2]\n")
-    printed = prints("impact", file, "--out", tmp_path / "out")
-    assert "kinetic restitution" in printed
-    for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
-        assert (tmp_path / "out" / name).stat().st_size > 100
-    # By hand from the CSV: the energetic restitution of Hertz's law is 1.
-    header, row = (tmp_path / "out/setup.csv").read_text().splitlines()[:2]
-    values = dict(zip(header.split(","), row.split(","), strict=True))
-    assert values["law"] == "hertz"
-    assert float(values["energetic_restitution"]) == pytest.approx(1.0, abs=1e-6)
-    assert float(values["friction_impulse_ratio"]) == pytest.approx(0.13, rel=1e-6)
-
-
 def test_a_budget_that_runs_out_ends_with_code_3(tmp_path, capsys):
     text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
     text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
@@ -274,3 +265,136 @@ def test_a_budget_that_runs_out_ends_with_code_3(tmp_path, capsys):
     assert "1 of 1 impacts (hertz): step-limit" in told.err
     assert "max_contacts" in told.err
     assert "unfinished" in told.out
+
+
+def test_where_the_tip_sticks_and_what_is_objected() -> None:
+    """No sliding at either end of the angles for mu = 0.5 (7.3 and 52), never for mu = 1."""
+    rod, rows = thesis_rows()
+    for angle in (7.3, 52.0):
+        assert alpha(rod, math.radians(angle), mu=0.5) == pytest.approx(0.0, abs=0.01)
+    steepest = max(mobility(rod, math.radians(a)).stick_friction for a in range(1, 90))
+    assert steepest == pytest.approx(0.77, abs=0.01)
+    for row in rows:
+        assert row.inferred.objections
+        assert row.inferred.return_duration < row.inferred.duration
+
+
+def test_friction_that_sticks_is_a_mistake() -> None:
+    with pytest.raises(InputError, match="stick"):
+        infer(thesis_rod(), MeasuredScar(math.radians(70), 3.0, 0.5, 0.4, 1e-4, 2e-4))
+
+
+def test_more_back_than_came_and_a_depth_beyond_the_tip_are_told() -> None:
+    found = infer(thesis_rod(), MeasuredScar(math.radians(45), 2.0, 0.1, 1.5, 0.026, 1e-3))
+    assert any("restitution 1.5: more comes back" in line for line in found.objections)
+    assert any("0.026 m is above the tip's radius" in line for line in found.objections)
+
+
+def test_file_and_command(tmp_path: Path, errs) -> None:
+    file = tmp_path / "trials.toml"
+    file.write_text(INVERSE)
+    row = read_inverse(file)[0]
+    assert row.inferred.duration == pytest.approx(1.38e-3, rel=0.01)
+    assert run(["inverse", str(file), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "trials-inverse.csv").exists()
+    file.write_text(INVERSE.replace("0.13", "0.9"))
+    told = errs("inverse", file, "--out", tmp_path)
+    assert "trial T01: friction_impulse_ratio: 0.9 makes the tip stick" in told
+
+
+LAW = LAWS["fitted"]
+
+
+def test_waves_asked_for_are_those_of_the_support_of_that_name():
+    by_name = blow(BALL + "[mechanisms]\nhalf-space-waves = true\n")["fitted"]
+    by_key = blow(BALL.replace("laws", 'support = "half-space"\nlaws'))["fitted"]
+    assert by_name.restitution == pytest.approx(by_key.restitution, rel=1e-12)
+    assert by_name.radiated_J == pytest.approx(by_key.radiated_J, rel=1e-9)
+
+
+def test_a_sweep_takes_the_mechanism_at_each_speed_as_single_blows_do():
+    text = BALL + (
+        "[sweep]\nimpact_speed_m_s = [0.3, 3.0]\n"
+        "[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 0.4\nrate_exponent = 0.3\n"
+    )
+    found = setup(text).swept(LAW)
+    for k, speed in enumerate((0.3, 3.0)):
+        alone = text.split("[sweep]")[0] + text.partition("3.0]\n")[2]
+        one = blow(alone.replace("impact_speed_m_s = 1.0", f"impact_speed_m_s = {speed}"))
+        assert found["restitution"][k] == pytest.approx(one["fitted"].restitution, rel=1e-4)
+        dent = one["fitted"].residual_flat_m
+        assert found["permanent_depth_m"][k] == pytest.approx(dent, rel=1e-4)
+
+
+def test_the_effect_is_that_against_the_blow_without_it():
+    found = blow(BALL + "[mechanisms]\ncontact-damping = { damping_s_m = 0.1 }\n")
+    plain = blow(BALL)["fitted"]
+    e = 100.0 * (found["fitted"].restitution / plain.restitution - 1.0)
+    dent = 100.0 * (found["fitted"].residual_flat_m / plain.residual_flat_m - 1.0)
+    (line,) = (one for one in found.checks() if one.startswith("contact-damping"))
+    assert line.endswith(f"dent {dent:+.2g} %, restitution {e:+.2g} %")
+    assert e < -1.0
+
+
+def test_a_standard_deviation_of_a_mechanism_enters_the_band():
+    key = "mechanisms.contact-damping.damping_s_m"
+    text = BALL + "[mechanisms]\ncontact-damping = { damping_s_m = { value = 0.1, std = 0.05 } }\n"
+    band = blow(text).bands["fitted"]
+    half, twice = (
+        blow(BALL + f"[mechanisms]\ncontact-damping = {{ damping_s_m = {x} }}\n")["fitted"]
+        for x in (0.05, 0.15)
+    )
+    wide = 0.5 * abs(half.restitution - twice.restitution)
+    assert abs(band.parts[key]["restitution"]) == pytest.approx(wide, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("contact-damping = 0.1", "true, false, or a table of its numbers"),
+        ("nonsense = false", "mechanisms.nonsense: unknown key"),
+        ("contact-damping = { damping_s_m = 3.0 }", r"0.003 to 0.3 \[s/m\]"),
+        ("contact-damping = { damping = 0.1 }", "unknown key"),
+        ("damping = true", "contact-damping"),
+        ("adhesion = true", "missing"),
+        ("half-space-waves = true", r"mechanisms.half-space-waves: given beside"),
+    ],
+)
+def test_a_wrong_mechanism_is_one_line(lines, words):
+    waves = 'support = "half-space"\nlaws' if "half-space" in lines else "laws"
+    with pytest.raises(InputErrors, match=words):
+        setup(BALL.replace("laws", waves) + "[mechanisms]\n" + lines + "\n")
+
+
+def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():
+    file = setup(BALL + "[mechanisms.squeeze-film]\nfilm_drag_Pa_s = 0.1\n")
+    with pytest.raises(InputErrors, match=r"mechanisms.squeeze-film: .* environment.viscosity_Pa"):
+        file.check_laws([LAW])
+
+
+def test_what_changes_nothing_at_one_speed_is_told_there():
+    made = blow(BALL + "[mechanisms.adhesion]\nwork_of_adhesion_J_m2 = 0.1\n")
+    begins = "adhesion changes nothing here: pulling the bodies apart takes"
+    assert any(line.startswith(begins) for line in made.checks())
+
+
+def test_what_changes_nothing_by_one_law_of_several_is_told():
+    """Roughness takes no energy of bodies that do not yield, so Hertz's law has none."""
+    file = setup(BALL + "[mechanisms]\nroughness = true\n")
+    file.check_laws([LAWS["hertz"], LAW])
+    told = blow_of(file, [LAWS["hertz"], LAW])
+    assert told["hertz"].restitution == pytest.approx(1.0, abs=1e-9)
+    assert any(one.startswith("roughness changes nothing here: ") for one in told.checks())
+
+
+def test_a_rough_flat_over_a_plate_ends_within_the_usual_steps():
+    """The bends of its layer cut steps short for a while; 400,000 of these had found 0.22."""
+    text = BALL.replace("laws", 'support = "plate"\nlaws').replace("2.0e11", "6.9e10", 1)
+    text = text.replace("3.05e8", "1.5e8").replace("7870", "2700\nthickness_m = 0.015")
+    text = text.replace("2.0e11", "6.2e11").replace("1.7e9", "4.0e9").replace("7800", "14900")
+    text = text.replace("0.005", "0.010").replace("_m_s = 1.0", "_m_s = 2.8014")
+    made = blow(text + "[mechanisms]\nroughness = true\n")
+    found, trace = made["fitted"], made.traces["fitted"]
+    assert found.outcome.completed
+    assert found.restitution == pytest.approx(0.22, abs=0.005)
+    assert trace.column("time_s")[-1] == pytest.approx(found.contact_time_s, rel=0.02)

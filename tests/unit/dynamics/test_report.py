@@ -14,12 +14,7 @@ from dentscope.dynamics import Approach, Scene, Settings, Striker, impacts, stri
 from dentscope.dynamics.files.blow import _cell
 from dentscope.dynamics.files.sweep import SweepTable
 from dentscope.dynamics.report.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.dynamics.report.checks import (
-    checks,
-    reason_above_one,
-    swept_above_one,
-    swept_walls,
-)
+from dentscope.dynamics.report.checks import checks, reason_above_one, swept_above_one, swept_walls
 from dentscope.dynamics.report.effect import effect
 from dentscope.dynamics.report.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS

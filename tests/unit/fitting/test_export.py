@@ -1,21 +1,27 @@
-"""The exported law is compiled or run in each language and equals the law itself."""
+"""The exported law is compiled or run in each language, LAMMPS included, and equals the law."""
 
 import ctypes
 import math
+import os
 import re
 import runpy
 import shutil
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.dynamics import Approach, Striker, scene_of, strike
 from dentscope.models import LAWS
-from dentscope.models.export import INPUTS, NAME, OUTPUTS, write_sources
+from dentscope.models.export import INPUTS, NAME, OUTPUTS, STYLE, write_sources
 
 INF = math.inf
+STEEL, ALUMINIUM = Material(193e9, 0.29, 7e8, density=8000.0), Material(68.9e9, 0.33, 2.76e8)
+RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
+R = 3e-3
+MASS = 4.0 / 3.0 * math.pi * R**3 * STEEL.density
 
 
 def draws():
@@ -41,23 +47,17 @@ def draws():
 
 
 def body(E, nu, Sy):
-    return Material(E=math.nan, nu=math.nan, rigid=True) if E == INF else Material(E, nu, Sy)
+    return RIGID if E == INF else Material(E, nu, Sy)
 
 
 def expected(rows, name):
     law = replace(LAWS[name], limits={})
     found = []
-    for E_s, nu_s, Sy_s, E_f, nu_f, Sy_f, R, d in rows:
-        pair = Pair(body(E_s, nu_s, Sy_s), body(E_f, nu_f, Sy_f), R)
-        found.append(
-            (
-                float(law.loading(pair, d)),
-                float(law.contact_radius(pair, d)),
-                float(law.share(pair, d)),
-                *(float(x) for x in law.residual(pair, d)),
-                float(law.unloading_exponent(pair, d)),
-            )
-        )
+    for *bodies, size, d in rows:
+        pair = Pair(body(*bodies[:3]), body(*bodies[3:]), size)
+        numbers = (law.loading, law.contact_radius, law.share, law.unloading_exponent)
+        force, radius, share, exponent = (float(number(pair, d)) for number in numbers)
+        found.append((force, radius, share, *map(float, law.residual(pair, d)), exponent))
     return np.array(found)
 
 
@@ -241,20 +241,155 @@ def test_one_collision_by_the_exported_force_is_ours(sources):
     program = sources / "driver"
     files = [sources / "driver.c", sources / f"{NAME}.c"]
     subprocess.run(["gcc", *flags, "-o", program, *files, "-lm"], check=True, timeout=120)
-    ball, flat = Material(193e9, 0.29, 7e8, density=8000.0), Material(68.9e9, 0.33, 2.76e8)
-    R = 3e-3
-    mass = 4.0 / 3.0 * math.pi * R**3 * ball.density
     for speed in (0.1, 1.0, 10.0):
-        ours = strike(
-            scene_of(
-                LAWS["fitted"], sphere=ball, flat=flat, gravity=0.0,
-                striker=Striker(mass=mass, tip_radius=R), approach=Approach(speed),
-            )
-        )  # fmt: skip
-        step = ours.contact_time_s / 5000.0
-        inputs = (mass, speed, step, ball.E, ball.nu, ball.Sy, flat.E, flat.nu, flat.Sy, R)
-        ((back, deepest, largest, residual),) = answers([program, *map(repr, inputs)], sources)
-        assert -back / speed == pytest.approx(ours.restitution, rel=1e-3)
-        assert deepest == pytest.approx(ours.peak_depth_m, rel=1e-3)
-        assert largest == pytest.approx(ours.peak_force_N, rel=1e-3)
-        assert residual == pytest.approx(ours.residual_m, rel=1e-3)
+        ours = struck(ALUMINIUM, R, MASS, speed)
+        bodies = (STEEL.E, STEEL.nu, STEEL.Sy, ALUMINIUM.E, ALUMINIUM.nu, ALUMINIUM.Sy)
+        inputs = (MASS, speed, ours.contact_time_s / 5000.0, *bodies, R)
+        ((back, *found),) = answers([program, *map(repr, inputs)], sources)
+        assert (-back / speed, *found) == pytest.approx(numbers_of(ours), rel=1e-3)
+
+
+def struck(flat, radius, mass, speed):
+    ball = Striker(mass=mass, tip_radius=radius)
+    return strike(scene_of(LAWS["fitted"], sphere=STEEL, flat=flat, gravity=0.0, striker=ball,
+                           approach=Approach(speed)))  # fmt: skip
+
+
+def numbers_of(ours):
+    return ours.restitution, ours.peak_depth_m, ours.peak_force_N, ours.residual_m
+
+
+SOURCE = Path(os.environ.get("LAMMPS_SOURCE", "no-such-folder"))
+FLAGS = ["-std=c++17", "-O1", "-Wall", "-Wextra", "-Werror"]
+INTERFACE = """
+#pragma once
+#include <stdexcept>
+#define FLERR __FILE__, __LINE__
+namespace LAMMPS_NS {
+struct Error {
+  void all(const char *, int, const char *what) { throw std::runtime_error(what); }
+};
+struct LAMMPS { Error *error; };
+namespace Granular_NS {
+struct GranularModel { double *history; int history_update; double delta, Reff; };
+class GranSubModNormal {
+ public:
+  GranSubModNormal(GranularModel *model, LAMMPS *lmp) : gm(model), error(lmp->error) {}
+  virtual ~GranSubModNormal() { delete[] transfer_history_factor; }
+  virtual void coeffs_to_local() = 0;
+  virtual void mix_coeffs(double *, double *) = 0;
+  virtual double calculate_contact_radius() = 0;
+  virtual double calculate_forces() = 0;
+  int num_coeffs, size_history, nondefault_history_transfer, history_index;
+  double *coeffs, *transfer_history_factor;
+ protected:
+  GranularModel *gm;
+  Error *error;
+  double damp;
+};
+}
+}
+"""
+
+LAMMPS_DRIVER = f"""
+#include "{STYLE}.h"
+#include <cstdio>
+#include <cstdlib>
+using namespace LAMMPS_NS;
+using namespace Granular_NS;
+
+/* One head-on collision by velocity Verlet: mass, speed, time step, radius, six coefficients. */
+int main(int argc, char **argv)
+{{
+  double in[10], kept[6] = {{-7.0}};
+  for (int k = 1; k < argc; k++) in[k - 1] = atof(argv[k]);
+  const double mass = in[0], dt = in[2];
+  Error error;
+  LAMMPS lmp = {{&error}};
+  GranularModel model = {{kept, 0, 0.0, in[3]}};
+  GranSubModNormalDentscope normal(&model, &lmp);
+  normal.coeffs = in + 4;
+  normal.history_index = 1;
+  try {{
+    normal.coeffs_to_local();
+  }} catch (const std::exception &refused) {{
+    puts(refused.what());
+    return 1;
+  }}
+  double v = in[1], x = 0.0, f = 0.0, deepest = 0.0, largest = 0.0, wide = 0.0;
+  do {{
+    v -= 0.5 * dt * f / mass;
+    model.delta = x += dt * v;
+    normal.calculate_forces();  // as in a set-up, which must leave no trace
+    model.history_update = 1;
+    const double a = normal.calculate_contact_radius();
+    f = normal.calculate_forces();
+    model.history_update = 0;
+    v -= 0.5 * dt * f / mass;
+    if (x > deepest) deepest = x;
+    if (f > largest) largest = f;
+    if (a > wide) wide = a;
+  }} while (f > 0.0);
+  printf("%.17g %.17g %.17g %.17g %.17g %.17g\\n", v, deepest, largest, kept[3], wide, kept[0]);
+  return 0;
+}}
+"""
+
+
+@needs("g++")
+@pytest.mark.skipif(not (SOURCE / "GRANULAR").is_dir(), reason="LAMMPS_SOURCE names no LAMMPS")
+def test_it_compiles_with_the_headers_of_lammps(sources):
+    ours = ["-I", str(sources), str(sources / f"{STYLE}.cpp")]
+    theirs = [f"-isystem{SOURCE / name}" for name in ("GRANULAR", ".", "STUBS")]
+    command = ["g++", *FLAGS, "-fsyntax-only", *theirs, *ours]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    listed = (sources / f"{STYLE}.h").read_text()
+    assert "GranSubModStyle(dentscope,GranSubModNormalDentscope,NORMAL);" in listed
+
+
+@pytest.fixture(scope="module")
+def program(sources):
+    for name in ("gran_sub_mod_normal.h", "granular_model.h", "error.h"):
+        (sources / name).write_text(INTERFACE)
+    (sources / "driver.cpp").write_text(LAMMPS_DRIVER)
+    made = sources / "lammps-driver"
+    files = [sources / "driver.cpp", sources / f"{STYLE}.cpp"]
+    subprocess.run(["g++", *FLAGS, "-o", made, *files], check=True, timeout=120)
+    return made
+
+
+def coefficients(body):
+    return (-1.0, -1.0, -1.0) if body.rigid else (body.E, body.nu, body.Sy)
+
+
+@needs("g++")
+@pytest.mark.parametrize(
+    ("flat", "radius", "mass", "speed"),
+    [(ALUMINIUM, R, MASS, 0.1), (ALUMINIUM, R, MASS, 10.0), (RIGID, R, MASS, 1.0),
+     (STEEL, 0.5 * R, 0.5 * MASS, 2.0)],
+    ids=["just yielding", "deep", "rigid wall", "two balls"],
+)  # fmt: skip
+def test_one_collision_by_it_is_ours(program, flat, radius, mass, speed):
+    """Restitution, depth, force, dent and contact radius, in 5000 steps."""
+    ours = struck(flat, radius, mass, speed)
+    step, bodies = ours.contact_time_s / 5000.0, (*coefficients(STEEL), *coefficients(flat))
+    command = [program, *map(repr, (mass, speed, step, radius, *bodies))]
+    ((back, deepest, *found, wide, untouched),) = answers(command, program.parent)
+    assert (-back / speed, deepest, *found) == pytest.approx(numbers_of(ours), rel=1e-3)
+    at_peak = LAWS["fitted"].contact_radius(Pair(STEEL, flat, radius), deepest)
+    assert wide == pytest.approx(float(at_peak), rel=1e-6)
+    assert untouched == -7.0
+
+
+@needs("g++")
+@pytest.mark.parametrize(
+    ("bodies", "said"),
+    [((RIGID, RIGID), "both bodies are rigid"), ((STEEL, None), "nu below 0.5")],
+)
+def test_what_is_no_body_is_refused(program, bodies, said):
+    given = [x for b in bodies for x in ((70e9, 0.5, 1e8) if b is None else coefficients(b))]
+    command = [program, *map(repr, (MASS, 1.0, 1e-9, R, *given))]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert said in done.stdout

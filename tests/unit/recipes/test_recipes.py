@@ -1,6 +1,5 @@
 """The recipes of CONTRIBUTING.md, each carried out with a toy as it is written there."""
 
-import csv
 import re
 import shutil
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import pytest
 from dentscope import fem
 from dentscope.campaigns.publish import published_designs
+from made_files import rows_of
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -45,7 +45,7 @@ def test_a_law(recipe):
         "laws", "compare", str(ROOT / "examples/case_steel.toml"), "--law", "toy", "--law",
         "johnson", "--out", "laws",
     )  # fmt: skip
-    rows = list(csv.DictReader((toy.work / "laws/curves.csv").read_text().splitlines()))
+    rows = rows_of(toy.work / "laws/curves.csv")
     deepest = {row["law"]: float(row["force_N"]) for row in rows}
     assert deepest["toy"] / deepest["johnson"] == pytest.approx(3.0 / 2.8, rel=1e-9)
     code, told = toy.pytest("tests/contract/test_law_contract.py", "-k", "toy and not anchor")
@@ -157,7 +157,7 @@ def test_an_input_format(recipe):
     toy.dentscope(
         "reduce", "toy", "drop.txt", "--into", "set", "--striker", "D", "--impact-speed-m-s", "2"
     )
-    rows = list(csv.DictReader((toy.work / "set/trials.csv").read_text().splitlines()))
+    rows = rows_of(toy.work / "set/trials.csv")
     assert [float(r["restitution"]) for r in rows if r["trial"].startswith("drop")] == [0.8]
 
 

@@ -1,6 +1,5 @@
 """`dentscope case`: what it writes, and how it answers mistakes."""
 
-import csv
 import json
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import meshio
 import numpy as np
 import pytest
 from dentscope.campaigns import read_curves
-from dentscope.cli import run
 from dentscope.cli.case import tell_unused
 from dentscope.core import InputError
 from dentscope.core.inputs.templates import template
@@ -18,6 +16,7 @@ from dentscope.models import law_named
 from dentscope.start.ball_file import read_ball
 from dentscope.start.case_file import read_case, read_pair
 from dentscope.start.measured import brinell, loading_work
+from made_files import put, rows_of
 
 GOOD = """
 radius_m = 0.002
@@ -38,12 +37,10 @@ level = "smoke"
 
 
 @pytest.mark.fe
-def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
-    path = tmp_path / "case.toml"
-    path.write_text(GOOD.replace("[3e-4]", "[1.5e-4, 2.1e-4, 3e-4]"))
-    assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 0
-    with (tmp_path / "out" / "curve.csv").open() as stream:
-        rows = list(csv.DictReader(stream))
+def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path, prints):
+    text = GOOD.replace("[3e-4]", "[1.5e-4, 2.1e-4, 3e-4]")
+    prints("case", put(tmp_path / "case.toml", text), "--out", tmp_path / "out")
+    rows = rows_of(tmp_path / "out" / "curve.csv")
     assert {row["phase"] for row in rows} == {"load", "unload-1", "unload-2", "unload-3"}
     load = [row for row in rows if row["phase"] == "load"]
     assert float(load[-1]["delta_over_R"]) == pytest.approx(3e-4)
@@ -85,14 +82,12 @@ def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
     work = np.trapezoid(np.append(0.0, force), np.append(0.0, depth))
     lost = 1.0 - stored.curve["dissipated"][-1] / work
     assert dent["energy_returned"] == pytest.approx(lost, abs=0.03)
-    with (tmp_path / "out" / "dent.csv").open() as stream:
-        surfaces = list(csv.DictReader(stream))
+    surfaces = rows_of(tmp_path / "out" / "dent.csv")
     z = [float(r["z_m"]) for r in surfaces if r["body"] == "flat"]
     assert -z[0] == pytest.approx(dent["left_flat"])
     assert dent["rim_height"] == pytest.approx(max(z), abs=1e-3 * abs(z[0]))
     for name in ("fields-0.0003.png", "dent.png"):
-        picture = mpimg.imread(tmp_path / "out" / name)
-        assert picture.std() > 0.05
+        assert mpimg.imread(tmp_path / "out" / name).std() > 0.05
 
 
 HARD = """
@@ -125,10 +120,8 @@ n = 0.2
 
 
 def read(tmp_path, text=HARD, curve=CURVE):
-    (tmp_path / "curve.csv").write_text(curve)
-    path = tmp_path / "case.toml"
-    path.write_text(text)
-    return read_case(path)[0]
+    put(tmp_path / "curve.csv", curve)
+    return read_case(put(tmp_path / "case.toml", text))[0]
 
 
 def test_a_flow_curve_a_rate_and_a_speed_reach_the_solver(tmp_path):
@@ -192,9 +185,8 @@ WRONG_FLOW = [
     [*((GOOD, *row) for row in WRONG), *((HARD, *row) for row in WRONG_FLOW)],
 )
 def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, text, old, new, words):
-    (tmp_path / "curve.csv").write_text(CURVE)
-    path = tmp_path / "case.toml"
-    path.write_text(text.replace(old, new))
+    put(tmp_path / "curve.csv", CURVE)
+    path = put(tmp_path / "case.toml", text.replace(old, new))
     message = errs("case", path, "--out", tmp_path / "out").strip()
     assert len(message.splitlines()) == 1, message
     for word in [str(path), *words]:
@@ -203,11 +195,8 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, text, old, new, word
 
 
 def test_a_flow_curve_of_a_recording_set_is_one_of_a_case(tmp_path):
-    as_a_case, as_a_set = (
-        read(tmp_path, curve=CURVE.replace("stress_Pa", name))
-        for name in ("stress_Pa", "true_stress_Pa")
-    )
-    assert as_a_set.pair == as_a_case.pair
+    as_a_set = read(tmp_path, curve=CURVE.replace("stress_Pa", "true_stress_Pa"))
+    assert as_a_set.pair == read(tmp_path).pair
 
 
 @pytest.mark.parametrize(
@@ -226,23 +215,18 @@ def test_a_mistake_in_a_flow_curve_names_its_row(tmp_path, curve, words):
 
 
 def test_a_speed_without_a_rate_is_told(tmp_path, capsys):
-    file = tmp_path / "case.toml"
     bodies = "[sphere]\nE_Pa = 2e11\nnu = 0.3\n[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 3e8\n"
     load = "[load]\nmax_delta_over_R = 0.01\nspeed_m_s = 1.0\n"
-    file.write_text(f"radius_m = 0.01\n{bodies}{load}")
-    tell_unused(file)
+    tell_unused(put(tmp_path / "case.toml", f"radius_m = 0.01\n{bodies}{load}"))
     assert "load.speed_m_s does nothing here: neither body has a rate" in capsys.readouterr().out
     rate = '[flat.rate]\nlaw = "cowper-symonds"\nD_1_s = 40.0\nq = 5.0\n'
-    file.write_text(f"radius_m = 0.01\n{bodies}{rate}{load}")
-    tell_unused(file)
+    tell_unused(put(tmp_path / "case.toml", f"radius_m = 0.01\n{bodies}{rate}{load}"))
     assert capsys.readouterr().out == ""
 
 
 def test_a_set_up_of_an_impact_is_no_case(tmp_path):
-    file = tmp_path / "ball.toml"
-    file.write_text(template("ball"))
     with pytest.raises(InputError, match="a set-up of `dentscope impact`") as refused:
-        read_pair(file)
+        read_pair(put(tmp_path / "ball.toml", template("ball")))
     assert len(str(refused.value).splitlines()) == 1
 
 
@@ -264,15 +248,13 @@ def test_the_work_of_a_loading_is_exact_for_hertz():
 
 
 def test_the_mass_of_the_ball_is_that_of_its_density(tmp_path):
-    path = tmp_path / "case.toml"
-    path.write_text(GOOD.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
-    assert read_pair(path)[0].ball_mass == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
-    path.write_text(GOOD)
-    assert np.isnan(read_pair(path)[0].ball_mass)
+    mass, weighed = 4.0 / 3.0 * np.pi * 0.002**3 * 7800.0, "density_kg_m3 = 7800\n[flat]"
+    path = put(tmp_path / "case.toml", GOOD.replace("[flat]", weighed))
+    assert read_pair(path)[0].ball_mass == pytest.approx(mass)
+    assert np.isnan(read_pair(put(path, GOOD))[0].ball_mass)
     # one that does not deform weighs as much, for the programs that are given it too
     rigid = GOOD.replace("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "rigid = true", 1)
-    path.write_text(rigid.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
-    assert read_ball(path).mass == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
+    assert read_ball(put(path, rigid.replace("[flat]", weighed))).mass == pytest.approx(mass)
 
 
 @pytest.mark.fe

@@ -52,12 +52,14 @@ def test_the_clock_stops_where_the_striker_does():
 def named(folder, name):
     """What `close` asks of a verdict, without the nulls and rivals that it does not."""
     problem = problem_of(read(folder))
-    mechanism = next(m for m in MECHANISMS if m.name == name)
     base = fit(Simulator(problem), ())
-    best = fit(Simulator(problem), (mechanism,), start=base)
-    ranking = SimpleNamespace(problem=problem, base=base)
-    choice = SimpleNamespace(members=(best,))
-    return SimpleNamespace(name="set", best=best, ranking=ranking, choice=choice)
+    best = fit(Simulator(problem), ([m for m in MECHANISMS if m.name == name]), start=base)
+    return verdict_of(best, problem=problem, base=base)
+
+
+def verdict_of(best, **ranking):
+    return SimpleNamespace(name="set", best=best, ranking=SimpleNamespace(**ranking),
+                           choice=SimpleNamespace(members=(best,)))  # fmt: skip
 
 
 @pytest.mark.fe
@@ -84,9 +86,5 @@ def test_a_metal_that_hardens_goes_back_to_the_finite_elements(tmp_path):
 
 def test_what_the_finite_elements_do_not_carry_is_refused():
     best = SimpleNamespace(mechanisms=(SimpleNamespace(name="tilt"),), names=("tilt",))
-    verdict = SimpleNamespace(
-        name="set", best=best, ranking=SimpleNamespace(problem=None),
-        choice=SimpleNamespace(members=(best,)),
-    )  # fmt: skip
     with pytest.raises(InputError, match="names tilt"):
-        close(verdict)
+        close(verdict_of(best, problem=None))

@@ -1,15 +1,21 @@
-"""The linear algebra of the evidence, against scipy and closed forms."""
+"""The linear algebra of the evidence, the rounds of a fit, and draws, against closed forms."""
 
 import math
 from dataclasses import replace
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
+from dentscope.core import InputError
+from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.estimates import parameters_of
+from dentscope.discrepancy.inference.fit import Fit, expand, moved_towards, tried_steps
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
 from dentscope.dynamics.mechanisms import Parameter
+from dentscope.recordings import read
+from dentscope.recordings.shipped import FOLDER
 from scipy.stats import beta, multivariate_normal, norm
 
 
@@ -188,3 +194,106 @@ def test_p_of_a_fit_is_that_of_as_many_numbers_as_no_parameter_takes(toy) -> Non
     # a parameter takes one up: the other is a normal variable
     taken = toy.fit_of([25.0, 2.0], toy.Effect("size", (50.0, 0.0)))
     assert taken.p_value == pytest.approx(2.0 * norm.sf(2.0))
+
+
+NOWHERE = np.zeros(0)
+
+
+@pytest.fixture
+def bench(toy):
+    """One cell that shows the root of its unknown, with its sign, to a tenth."""
+
+    class Bent(toy.Simulator):
+        def predict(self, mechanisms, points):
+            z = np.array([p.z for p in points])
+            return np.sign(z) * np.sqrt(np.abs(z))
+
+    given = toy.problem([0.0], derivative=[[0.0]])
+    return Bent(replace(given, cells=replace(given.cells, std=np.array([0.1]))))
+
+
+def expanded(bench, z: np.ndarray) -> Fit:
+    return expand(bench, (), Grid(()), z, NOWHERE, None)
+
+
+def test_whole_steps_swing_and_tried_ones_arrive(bench) -> None:
+    """Newton's method turns the root of z into -z at every step; secants a little less."""
+    whole = tried = np.array([1.0])
+    for _ in range(4):
+        whole, _ = moved_towards(expanded(bench, whole), whole, NOWHERE)
+        tried, _, _ = tried_steps(bench, expanded(bench, tried), tried, NOWHERE)
+    assert abs(whole[0]) > 0.2
+    assert abs(tried[0]) < 0.2 * abs(whole[0])
+
+
+def test_a_step_that_fits_worse_is_not_gone(bench) -> None:
+    z = np.array([1e-4])
+    found = replace(expanded(bench, z), z=np.array([-1.5]))
+    after, place, settled = tried_steps(bench, found, z, NOWHERE)
+    assert after == pytest.approx(z)
+    assert place.size == 0
+    assert settled
+
+
+def test_a_step_within_what_matters_ends_the_fit(bench) -> None:
+    z = np.array([0.2])
+    found = replace(expanded(bench, z), z=np.array([0.1]))
+    after, _, settled = tried_steps(bench, found, z, NOWHERE)
+    assert after == pytest.approx([0.1])
+    assert settled
+
+
+@pytest.fixture(scope="module")
+def verdict():
+    return diagnose(read(FOLDER / "kharaz-2001-oblique"))
+
+
+def test_draws_have_the_bounds_that_the_verdict_tells(verdict) -> None:
+    found = verdict.samples(4000)
+    assert list(found.parameters) == list(verdict.parameters)
+    for name, told in verdict.parameters.items():
+        low, high = np.quantile(found.parameters[name], [0.05, 0.95])
+        wide = told["high"] - told["low"]
+        assert low == pytest.approx(told["low"], abs=0.1 * wide), name
+        assert high == pytest.approx(told["high"], abs=0.1 * wide), name
+
+
+def test_what_is_shown_is_a_screen(verdict) -> None:
+    told = repr(verdict).splitlines()
+    assert told[0].split() == ["kharaz-2001-oblique:", "missing-physics", "probability"]
+    assert told[1].split() == ["tangential-compliance", "0.95"]
+    rows = repr(verdict.samples(100)).splitlines()
+    assert len(rows) == 1 + len(verdict.parameters)
+    assert all(len(line) < 100 for line in (*told, *rows))
+
+
+def test_what_is_read_again_scatters_about_what_was_read(verdict) -> None:
+    """As wide as posterior and noise together: never narrower than the noise of the means."""
+    found, cells = verdict.samples(2000), verdict.problem.cells
+    for name, again in found.predicted.items():
+        at = [k for k, one in enumerate(cells.observable) if one == name]
+        spread = np.log(again).std(0) if cells.is_log[at].all() else again.std(0)
+        noise = np.sqrt(np.diag(verdict.best.linear.noise))[at]
+        assert (spread > 0.93 * noise).all()
+        assert (np.abs(found.measured[name] - again.mean(0)) < 4.0 * again.std(0)).all()
+    # with nothing missing the spins of this set are not met
+    nothing = verdict.samples(2000, explanation="baseline")
+    off = [np.abs(x.measured["rebound_spin_rad_s"] / x.predicted["rebound_spin_rad_s"].mean(0) - 1)
+           for x in (nothing, found)]  # fmt: skip
+    assert off[0].max() > 3.0 * off[1].max()
+    with pytest.raises(InputError, match=r"'magic' .*baseline"):
+        verdict.samples(explanation="magic")
+
+
+def test_the_file_has_the_groups_and_dimensions_that_arviz_reads(verdict, tmp_path) -> None:
+    found = verdict.samples(100)
+    with h5py.File(found.to_netcdf(tmp_path / "samples.nc")) as file:
+        assert set(file) == {"posterior", "posterior_predictive", "observed_data"}
+        sizes = file["posterior/target.E_Pa"]
+        assert sizes.shape == (4, 25)
+        assert [d[0].name for d in sizes.dims] == ["/posterior/chain", "/posterior/draw"]
+        assert sizes.attrs["units"] == "Pa"
+        again = file["posterior_predictive/restitution"]
+        assert again.dims[2][0][:].tolist() == found.condition["restitution"].tolist()
+        assert np.ravel(again) == pytest.approx(np.ravel(found.predicted["restitution"]))
+        assert file["observed_data/restitution"][:] == pytest.approx(found.measured["restitution"])
