@@ -230,6 +230,7 @@ MISTAKES = {
     ("target", "density_kg_m3"): ({"value": 7.8}, "target.density_kg_m3: 7.8 .*allowed: a number"),
     ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
     ("target", "Sy_Pa"): ({"value": 3e8, "known": "well"}, 'target.Sy_Pa: .*known = "guess"'),
+    ("strikers", "rod", "Sy_Pa"): ({"value": 3e8, "std": 1e7, "known": "guess"}, "std, not both"),
     ("strikers", "rod", "mass"): (1.0, "strikers.rod.mass: unknown key"),
     ("noise",): ({"restituton": 0.1}, "noise.restituton: unknown key"),
     ("friction",): ({"coefficient": -1.0}, "friction.coefficient: -1.0"),

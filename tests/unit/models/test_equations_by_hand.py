@@ -408,7 +408,7 @@ def test_every_equation_is_listed_once():
 
 def names():
     text = THEORY.read_text("utf-8")
-    return sorted(set(re.findall(r"`((?:core|models|fem|impact)\.[\w.]+)`", text)))
+    return sorted(set(re.findall(r"`((?:core|models|fem|dynamics)\.[\w.]+)`", text)))
 
 
 @pytest.mark.parametrize("name", names())
