@@ -15,7 +15,15 @@ from dataclasses import dataclass
 
 from ..core.errors import InputError
 from .case import Case
-from .cases.drawn import challenge, near_equal, robustness, space, survey, validation, validation_2
+from .cases.drawn import (
+    challenge,
+    near_equal,
+    robustness,
+    space,
+    survey,
+    validation,
+    validation_2,
+)
 from .cases.hardening import hardening, robustness_hardening, validation_hardening
 from .cases.plateau import plateau, validation_plateau
 from .cases.thesis import smoke, thesis_first, thesis_second, thesis_third
