@@ -3,6 +3,7 @@
 import ast
 import re
 import runpy
+import subprocess
 import sys
 import tomllib
 import zipfile
@@ -309,3 +310,21 @@ def test_the_challenge_was_drawn_from_these_coefficients():
     assert len(names) == 24
     assert all(any(fitted.startswith(bit) for bit in name.split("-") if len(bit) > 5)
                for name in names), names[:2]  # fmt: skip
+
+
+def test_benchmarks_import_without_the_paths_of_the_tests():
+    code = (
+        "import runpy, sys\n"
+        "for file in sys.argv[1:]:\n"
+        "    kept = sys.path[:]\n"
+        "    runpy.run_path(file, run_name='imported')\n"
+        "    sys.path[:] = kept\n"
+        "    for name in [n for n in sys.modules if n.startswith('made_')]: del sys.modules[name]\n"
+    )
+    folder = ROOT / "tools" / "benchmarks"
+    files = [f for f in folder.glob("*.py") if "__main__" in f.read_text(encoding="utf-8")]
+    assert len(files) > 15
+    ended = subprocess.run(
+        [sys.executable, "-c", code, *map(str, files)], cwd=folder, capture_output=True, text=True
+    )
+    assert ended.returncode == 0, ended.stderr

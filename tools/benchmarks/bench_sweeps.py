@@ -16,6 +16,8 @@ from pathlib import Path
 SECONDS, BYTES = 20.0, 600e6
 
 _ROOT = Path(__file__).parents[2]
+# what it draws imports as the tests do
+sys.path.insert(0, str(_ROOT / "tests/faults"))
 SWEEPS = runpy.run_path(str(_ROOT / "tests/physics/test_impact_sweeps_end.py"))
 
 
