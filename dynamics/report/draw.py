@@ -60,6 +60,8 @@ def draw_sweep(
     Where several conditions are swept, the others stand at their first values. `stds` are standard
     deviations of the first law's numbers, drawn as a band.
     """
+    from matplotlib.ticker import LogLocator
+
     across = max(swept, key=lambda name: len(swept[name]))
     lengths = [len(v) for v in swept.values()]
     place = tuple(slice(None) if name == across else 0 for name in swept)
@@ -88,6 +90,11 @@ def draw_sweep(
                     lw=float(alone), label="its standard deviation",
                 )  # fmt: skip
         axis.set(xlabel=CONDITIONS.get(across, across), ylabel=told.axis, xscale=scale)
+        if scale == "log" and max(swept[across]) < 300.0 * min(swept[across]):
+            # over a decade or two powers of ten have factors, which overlap
+            axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.xaxis.set_major_formatter("{x:g}")
+            axis.xaxis.set_minor_formatter("")
         axis.grid(alpha=0.3)
     fixed = ", ".join(f"{CONDITIONS.get(k, k)} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)

@@ -26,6 +26,11 @@ def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(values, scale):
     (line,) = made.axes[0].get_lines()
     assert (line.get_marker() == "o") == (len(values) == 1)  # one point is seen
     assert {a.get_xscale() for a in made.axes} == {scale}
+    if scale == "log":  # plain numbers, which do not overlap
+        made.canvas.draw()
+        ticks = [t.get_text() for t in made.axes[0].get_xticklabels(which="both") if t.get_text()]
+        assert {"0.02", "0.05", "0.2"} < set(ticks)
+        assert all(float(tick) for tick in ticks)
     assert made.get_suptitle() == ("friction [-] = 0.1" if len(values) > 2 else "")
 
 
