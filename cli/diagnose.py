@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -30,10 +30,10 @@ def diagnose(
     out: Annotated[Path | None, folder_option("Folder for verdict.json and report.html.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same answer.")] = 0,
     law: Annotated[
-        str | None,
+        Literal["fitted", "table"] | None,
         typer.Option(
-            metavar="fitted|table",
-            help="Fitted, or the own pair solved; else solved if it has a flow curve.",
+            help="Fitted, or the own pair solved; else solved if it has a flow curve. No other: "
+            "how far off it is, is not known."
         ),
     ] = None,
     cautious: Annotated[
@@ -68,14 +68,12 @@ def diagnose(
     out = out or writable_folder(report_folder(place), key="--out")
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import lines, write_report
-    from ..start.diagnosis import law_choice
 
-    chosen = law_choice(law, source="command line", key="--law")
     show = _progress(quiet=quiet)
     if not quiet:
         tell_first_use()
     verdict = run(
-        recordings, seed=seed, law=chosen, cautious=cautious, assume=assume or (), progress=show
+        recordings, seed=seed, law=law, cautious=cautious, assume=assume or (), progress=show
     )
     show("")
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)

@@ -72,7 +72,9 @@ def diagnose(
     the library.
     """
     if law not in (None, *get_args(LawChoice)):
-        raise InputError(repr(law), key="law", allowed=", ".join(get_args(LawChoice)))
+        known = " or ".join(get_args(LawChoice))
+        why = "how far off another is, is not known and would pass for physics"
+        raise InputError(repr(law), key="law", allowed=f"{known}; {why}")
     if not (one_number(seed, key="seed", allowed=_SEED) >= 0 and seed == int(seed)):
         raise InputError(repr(seed), key="seed", allowed=_SEED)
     rng = np.random.default_rng(int(seed))

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import InputError
 from ..core.inputs.input_file import path_of
 from ..core.observables import OBSERVABLES
 from ..core.output import panels
@@ -91,16 +90,6 @@ class Diagnosis:
         return f"<p><b>{html.escape(self.finding)}</b></p>{table}"
 
 
-def law_choice(law: object, *, source: str = "", key: str = "law") -> LawChoice | None:
-    """Return the choice of a law; refuse one whose own error would pass for missing physics."""
-    if law is None or law == "fitted" or law == "table":
-        return law
-    raise InputError(
-        repr(law), source=source, key=key,
-        allowed="fitted or table; how far off another is, is not known and would pass for physics",
-    )  # fmt: skip
-
-
 def diagnose(
     folder: str | Path,
     *,
@@ -140,7 +129,7 @@ def diagnose(
     """
     place = path_of(folder, key="folder", allowed="a recording set")
     verdict = verdict_of(
-        read(set_folder(place)), seed=seed, law=law_choice(law), cautious=cautious,
+        read(set_folder(place)), seed=seed, law=law, cautious=cautious,
         assume=[assume] if isinstance(assume, str) else assume, mechanisms=mechanisms,
     )  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

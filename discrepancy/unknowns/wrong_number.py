@@ -91,8 +91,6 @@ class WrongNumber(Mechanism):
 
     static = True
     form = 0.0
-    of_rig = True
-    """Whether the number itself is changed, by the factor."""
     measure = "factor"
     """Of how far it is off, as in verdict.json; `told` is it in words, around the number."""
     told = "By a factor of {}"
@@ -109,6 +107,11 @@ class WrongNumber(Mechanism):
         self.parameters = (
             Parameter(f"{key}_factor", "-", times / most, times * most, "log", times, _SOURCE),
         )  # fmt: skip
+
+    @property
+    def of_rig(self) -> bool:
+        """Whether it is a number of the rig, times the factor."""
+        return self.measure == "factor" and self.kind != "reading"
 
     @property
     def settled_by(self) -> str:
@@ -151,8 +154,6 @@ class WrongThickness(WrongNumber):
 class WrongReading(WrongNumber):
     """All readings of one observable off by a factor: a calibration, a unit, a definition."""
 
-    of_rig = False
-
     def after(
         self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
     ) -> Mapping[str, Array]:
@@ -163,7 +164,6 @@ class WrongReading(WrongNumber):
 class Squared(WrongNumber):
     """Restitutions that are their squares: ratios of heights, or of energies."""
 
-    of_rig = False
     measure, told = "power", "To the power of {}"
 
     def __init__(self) -> None:
@@ -184,7 +184,6 @@ class Squared(WrongNumber):
 class WrongHeight(WrongNumber):
     """All heights of fall off by one length: read to the ball's centre or top, or from a table."""
 
-    of_rig = False
     measure, told = "offset", "By {}"
 
     def __init__(
@@ -226,7 +225,6 @@ class WrongHeights(WrongHeight):
 class WrongAngle(WrongNumber):
     """All angles are the complements of what is stated, or nearly: read from the other line."""
 
-    of_rig = False
     measure, told = "complement", "By {} of the way to 90 degrees less each"
 
     def __init__(self) -> None:

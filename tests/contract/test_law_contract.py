@@ -184,6 +184,15 @@ def test_a_depth_that_is_no_number_is_refused():
         LAWS["hertz"].loading(PAIRS["equal"], [1e-6, math.nan])
 
 
+def test_jackson_green_joins_hertz_at_w_1_9_within_half_a_percent():
+    pair = PAIRS["flattening"]
+    onset = critical_depth(pair)
+    below, above = LAWS["jackson-green"].loading(
+        pair, [1.9 * onset * (1 - 1e-9), 1.9 * onset * 1.0000001]
+    )
+    assert 5e-4 < abs(float(above / below) - 1.0) < 7e-3
+
+
 def table_2_1_pair(number, ratio):
     E_s, E_f, Sy, nu_s = {
         1: (200e9, 200e9, 200e6, 0.30), 3: (71.7e9, 200e9, 300e6, 0.33),

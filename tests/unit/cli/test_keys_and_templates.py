@@ -13,7 +13,7 @@ from dentscope.cli.shared.keys import FILES, keys_of
 from dentscope.core import InputError
 from dentscope.core.inputs.templates import CASE, INVERSE, KINDS, template
 from dentscope.recordings.shipped import set_folder, shipped_sets
-from made_files import put
+from made_files import put, rows_of
 from typer.testing import CliRunner
 
 
@@ -61,6 +61,12 @@ def test_the_template_of_a_case_is_solved_as_it_is(tmp_path, prints):
     text = text.replace("[0.001, 0.003, 0.01]  ", f"{turns}  ")
     assert tomllib.loads(text)["load"] == {"max_delta_over_R": 0.001, "unload_from": turns}
     prints("case", put(file, text), "--out", tmp_path / "out")
+    first = rows_of(tmp_path / "out" / "curve.csv")[0]
+    # Hertz at the first depth, below yield: 4/3 E' sqrt(R) d^1.5
+    reduced = 1.0 / (0.91 / 2.1e11 + 0.91 / 2.0e11)
+    d = 0.005 * float(first["delta_over_R"])
+    hertz = 4.0 / 3.0 * reduced * (0.005 * d**3) ** 0.5
+    assert (first["phase"], float(first["force_N"])) == ("load", pytest.approx(hertz, rel=0.01))
     assert (tmp_path / "out" / "law.json").exists()
 
 
