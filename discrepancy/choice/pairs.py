@@ -12,7 +12,7 @@ from scipy.special import logsumexp
 
 from ...core.arrays import Array
 from ..baseline.laws import Progress
-from ..comparison.forward import Point, Simulator
+from ..comparison.forward import Simulator
 from ..inference.fit import Fit, fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual
@@ -44,8 +44,8 @@ def with_pairs(
 ) -> Ranking:
     """Screen all pairs, one of them a mechanism, and fit those that lead by it.
 
-    What leads is fitted, to the problem of the singles; the rest count by their screening. What
-    decides together where bodies slide is no sum: beside the leader it is simulated.
+    What leads is fitted, to the problem of the singles; the rest count by their screening. Pairs
+    that decide together where bodies slide are no sum: all are fitted where one of such leads.
     """
     simulator = simulator.of(ranking.problem)
     prior = Priors.of(ranking)
@@ -54,20 +54,15 @@ def with_pairs(
         return prior.log(names) + tempered(gain)
 
     least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
-    lead = ranking.singles[0].name if ranking.singles else ""
-    order = [
-        _there(simulator, ranking, c)
-        if c.one.mechanism.aslant and c.two.mechanism.aslant and lead in c.names
-        else c
-        for c in _candidates(ranking)
-    ]
-    order.sort(key=lambda c: -weight(c.names, c.gain))
+    order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
+    slides = bool(ranking.singles) and ranking.singles[0].mechanisms[0].aslant
     pairs: list[Fit] = []
     best = -math.inf
     for c in order:
         worth = weight(c.names, c.gain)
-        if worth < least - RULES.second or (len(pairs) >= RULES.paired and worth < best):
-            break
+        behind = worth < least - RULES.second or (len(pairs) >= RULES.paired and worth < best)
+        if behind and not (slides and c.one.mechanism.aslant and c.two.mechanism.aslant):
+            continue
         progress(f"fitting {c.names[0]} with {c.names[1]}")
         near = [f for f in ranking.singles if f.mechanisms[0].name in c.names]
         start = max(near, key=lambda f: f.log_evidence)
@@ -103,7 +98,7 @@ def _beside(ranking: Ranking, lead: Fit) -> Iterable[_Candidate]:
     own = lead.mechanisms[0]
     for s in ranking.screened:
         if s.mechanism is not own and not (is_wrong(s.mechanism) and is_wrong(own)):
-            yield _together(ranking, lead, s, s.effect + _otherwise(ranking, lead, s))
+            yield _together(ranking, lead, s)
 
 
 def _otherwise(ranking: Ranking, lead: Fit, screened: Screened) -> Array:
@@ -115,20 +110,9 @@ def _otherwise(ranking: Ranking, lead: Fit, screened: Screened) -> Array:
     return np.outer(off, more / known[at[0]].spread) if at else np.zeros(more.shape[:1])
 
 
-def _there(simulator: Simulator, ranking: Ranking, c: _Candidate) -> _Candidate:
-    """The same pair, by what the other does beside the leading fit: simulated there."""
-    lead = ranking.singles[0]
-    other = c.two if c.one.mechanism is lead.mechanisms[0] else c.one
-    own, z = lead.grid.values(lead.place), lead.z
-    points = [Point(z, {**own, **values}) for values in other.grid.nodes()]
-    both = simulator.predict((c.one.mechanism, c.two.mechanism), points)
-    alone = simulator.predict(lead.mechanisms, [Point(z, own)])[0]
-    there = _together(ranking, lead, other, other.grid.refine(both - alone))
-    return max(c, there, key=lambda one: one.gain)
-
-
-def _together(ranking: Ranking, lead: Fit, s: Screened, effect: Array) -> _Candidate:
-    """A fitted explanation, its own numbers free, with another of such an effect, (k, m)."""
+def _together(ranking: Ranking, lead: Fit, s: Screened) -> _Candidate:
+    """A fitted explanation, its own numbers free, with another."""
+    effect = s.effect + _otherwise(ranking, lead, s)
     order = [x.mechanism.name for x in ranking.screened]
     mine, its = order.index(lead.name), order.index(s.mechanism.name)
     few, some = (slice(None, None, max(len(x) // _PLACES, 1)) for x in (lead.residuals, effect))

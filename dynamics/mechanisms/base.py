@@ -136,8 +136,8 @@ class Mechanism(ABC):
     - `named`: whether a verdict has a name for it. What has none counts as something outside the
       library, and the report says that it behaves like this.
     - `static`: whether it acts without motion, and so on a quasi-static press as well.
-    - `aslant`: whether it acts along the surface: where bodies stick, and where they slide, two of
-      these decide together, so that what they do is no sum.
+    - `aslant`: whether it moves the line between sticking and sliding: two of these decide
+      together where that is, so that what they do is no sum.
     - `mutual`: whether what it takes of the approach goes to the struck body: of both it keeps the
       momentum.
     - `in_flight`: whether it acts before the touch: the others meet what it has left of the

@@ -14,8 +14,6 @@ from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Val
 class SlidingMechanism(Mechanism):
     """A mechanism of the motion along the flat."""
 
-    aslant: ClassVar[bool] = True
-
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""
         if not any(is_oblique(scene) for scene, _ in situations):
@@ -29,6 +27,7 @@ class VelocityDependentFriction(SlidingMechanism):
     name = "velocity-dependent-friction"
     title = "friction depends on the sliding speed"
     equations = "mu(v) = mu_d + (mu_s - mu_d) exp(-v/v_0), stated mu = mu_d^(1-w) mu_s^w"
+    aslant: ClassVar[bool] = True
     parameters = (
         Parameter(
             "static_over_dynamic", "-", 0.3, 3.0, "log", 1.0,
@@ -64,6 +63,7 @@ class PloughingFriction(SlidingMechanism):
     name = "ploughing-friction"
     title = "the tip ploughs"
     equations = "mu + s (4/(3 pi)) a/R"
+    aslant: ClassVar[bool] = True
     parameters = (
         Parameter(
             "ploughing_scale", "-", 0.3, 5.0, "log", 0.0,

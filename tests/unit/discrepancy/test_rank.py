@@ -180,7 +180,7 @@ def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:
 
 
 @pytest.mark.parametrize("aslant", [True, False])
-def test_two_that_decide_together_are_screened_by_simulation(toy, aslant) -> None:
+def test_two_that_decide_together_are_fitted_whatever_their_sum(toy, aslant) -> None:
     """Beside what rises the other bends what it alone would only lower."""
     effects = (
         toy.Effect("rising", RISING, aslant=aslant), toy.Effect("low", (-3.0,) * 8, aslant=aslant)
