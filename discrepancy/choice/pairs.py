@@ -53,14 +53,14 @@ def with_pairs(
     def weight(names: Sequence[str], gain: float) -> float:
         return prior.log(names) + tempered(gain)
 
-    least = max(weight(members(label), gain) for label, gain in gains(ranking).items())
+    least = max(weight(members(k), g) for k, g in gains(ranking).items()) - RULES.second
     order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
     slides = bool(ranking.singles) and ranking.singles[0].mechanisms[0].aslant
     pairs: list[Fit] = []
     best = -math.inf
     for c in order:
-        worth = weight(c.names, c.gain)
-        behind = worth < least - RULES.second or (len(pairs) >= RULES.paired and worth < best)
+        summed = weight(c.names, c.gain)
+        behind = summed < least or (len(pairs) >= RULES.paired and summed < best)
         if behind and not (slides and c.one.mechanism.aslant and c.two.mechanism.aslant):
             continue
         progress(f"fitting {c.names[0]} with {c.names[1]}")
@@ -70,7 +70,12 @@ def with_pairs(
         pair = c.one.mechanism, c.two.mechanism
         pairs.append(fit_anchored(simulator, pair, both, start=start, place=c.place))
         best = max(best, weight(c.names, pairs[-1].log_evidence - ranking.base.log_evidence))
-    pairs = sharpened_leading(simulator, pairs, ranking.base, rounds=1)
+    # the fits of two that gain nothing over one stay behind it, however sharp
+    alone = max((f.log_evidence for f in ranking.singles), default=-math.inf)
+    more = [f for f in pairs if f.log_evidence > alone]
+    rest = [f for f in pairs if f.log_evidence <= alone]
+    pairs = [*sharpened_leading(simulator, more, ranking.base, rounds=1), *rest]
+    pairs.sort(key=lambda f: -f.log_evidence)
     fitted = {f.name for f in pairs}
     unfitted = {"+".join(c.names): c.gain for c in order}
     return replace(
