@@ -70,7 +70,7 @@ def fitted(simulator: Simulator, leading: Fit) -> Fit:
         return sharpened_leading(simulator, found, base)[0]
     both = pair_effect(simulator, *screened)
     start = max(found, key=lambda f: f.log_evidence)
-    pair = fit_anchored(simulator, leading.mechanisms, both, start=start, place=leading.place)
+    pair = fit_anchored(simulator, leading.mechanisms, both, z=start.z, place=leading.place)
     return sharpened_leading(simulator, [pair], base, rounds=5)[0]
 
 

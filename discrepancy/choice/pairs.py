@@ -26,12 +26,13 @@ _PLACES = 250
 
 
 class _Candidate(NamedTuple):
-    """Two by the sum of their effects: ln B over the baseline, where in their priors."""
+    """Two by the sum of their effects: ln B over the baseline, where in priors and unknowns."""
 
     one: Screened
     two: Screened
     gain: float
     place: Array
+    z: Array
 
     @property
     def names(self) -> tuple[str, str]:
@@ -56,24 +57,23 @@ def with_pairs(
     least = max(weight(members(k), g) for k, g in gains(ranking).items()) - RULES.second
     order = sorted(_candidates(ranking), key=lambda c: -weight(c.names, c.gain))
     slides = bool(ranking.singles) and ranking.singles[0].mechanisms[0].aslant
-    pairs: list[Fit] = []
-    best = -math.inf
+    known = [f.log_evidence - ranking.base.log_evidence for f in ranking.singles]
+    alone, best = max(known, default=0.0), -math.inf
+    more: list[Fit] = []
+    rest: list[Fit] = []
     for c in order:
         summed = weight(c.names, c.gain)
-        behind = summed < least or (len(pairs) >= RULES.paired and summed < best)
+        behind = summed < least or (len(more) + len(rest) >= RULES.paired and summed < best)
         if behind and not (slides and c.one.mechanism.aslant and c.two.mechanism.aslant):
             continue
         progress(f"fitting {c.names[0]} with {c.names[1]}")
-        near = [f for f in ranking.singles if f.mechanisms[0].name in c.names]
-        start = max(near, key=lambda f: f.log_evidence)
         both = pair_effect(simulator, c.one, c.two)
         pair = c.one.mechanism, c.two.mechanism
-        pairs.append(fit_anchored(simulator, pair, both, start=start, place=c.place))
-        best = max(best, weight(c.names, pairs[-1].log_evidence - ranking.base.log_evidence))
-    # the fits of two that gain nothing over one stay behind it, however sharp
-    alone = max((f.log_evidence for f in ranking.singles), default=-math.inf)
-    more = [f for f in pairs if f.log_evidence > alone]
-    rest = [f for f in pairs if f.log_evidence <= alone]
+        found = fit_anchored(simulator, pair, both, z=c.z, place=c.place)
+        gain = found.log_evidence - ranking.base.log_evidence
+        # two that gain nothing over one stay behind it, however sharp
+        (more if max(gain, c.gain) > alone else rest).append(found)
+        best = max(best, weight(c.names, gain))
     pairs = [*sharpened_leading(simulator, more, ranking.base, rounds=1), *rest]
     pairs.sort(key=lambda f: -f.log_evidence)
     fitted = {f.name for f in pairs}
@@ -129,7 +129,8 @@ def _together(ranking: Ranking, lead: Fit, s: Screened) -> _Candidate:
     both = [(mine, lead.grid.places()[few][p]), (its, s.grid.places()[some][q])]
     (i, first), (j, second) = both if mine < its else both[::-1]
     place = np.concatenate([first, second])
-    return _Candidate(ranking.screened[i], ranking.screened[j], gain, place)
+    z, _ = lead.linear.unknowns(lead.residuals[few][p] - effect[some][q])
+    return _Candidate(ranking.screened[i], ranking.screened[j], gain, place, z)
 
 
 def pair_effect(

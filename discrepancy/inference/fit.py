@@ -131,23 +131,25 @@ def fit_anchored(
     mechanisms: tuple[Mechanism, ...],
     effect: Callable[[Array, Array], Array],
     *,
-    start: Fit,
+    z: Array,
     place: Array,
 ) -> Fit:
     """Fit an explanation of several mechanisms whose effects are known one by one, as `fit` does.
 
     `effect` gives the change of the cells over the refined grid, (k, m), from unknowns (n_z,) and a
-    place of that grid.
+    place of that grid; `z` and `place` are where to start. Of two rounds the better one counts.
     """
     grid = grid_of(simulator.problem, mechanisms)
-    z, place = start.z.copy(), grid.places()[grid.index(place)]
+    place = grid.places()[grid.index(place)]
+    rounds = []
     for _ in range(2):
         found = expand(simulator, mechanisms, grid, z, place, effect(z, place))
         z, settled = moved_towards(found, z, place)
         place = found.place
+        rounds.append(replace(found, z=z))
         if settled:
             break
-    return replace(found, z=z)
+    return max(rounds, key=lambda one: one.log_evidence)
 
 
 def moved_towards(found: Fit, z: Array, place: Array) -> tuple[Array, bool]:

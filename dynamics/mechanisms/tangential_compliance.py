@@ -30,6 +30,7 @@ class TangentialCompliance(SlidingMechanism):
     # exponent of 0.2 (Biwa and Storakers, J. Mech. Phys. Solids 43 (1995) 1303): 10 % in a
     scale_error: ClassVar[float] = 0.05
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
+    aslant: ClassVar[bool] = True
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.pairs import pair_effect, with_pairs
+from dentscope.discrepancy.choice.pairs import _candidates, pair_effect, with_pairs
 from dentscope.discrepancy.comparison.forward import Point
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.together import refined
@@ -177,6 +177,15 @@ def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:
     assert pair.name == "rising+bent"
     assert pair.place == pytest.approx([0.5, 0.4], abs=0.02)
     assert pair.log_evidence > found.singles[0].log_evidence + 10.0
+
+
+def test_a_pair_is_fitted_from_the_unknowns_that_both_leave(toy, library) -> None:
+    """One effect alone takes part of the other by an unknown; beside both that stands still."""
+    data = 0.5 * np.array(RISING) + 0.4 * np.array(BENT)
+    _, found = ranked(toy, library, data, 0.2 * np.array(BENT)[:, None])
+    alone = next(f for f in found.singles if f.name == "rising")
+    both = max(_candidates(found), key=lambda c: c.gain)
+    assert (both.names, abs(both.z[0]) < 0.1 * abs(alone.z[0])) == (("rising", "bent"), True)
 
 
 @pytest.mark.parametrize("aslant", [True, False])

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.choice.pairs import _candidates, pair_effect, with_pairs
 from dentscope.discrepancy.inference.derivatives import _beside
-from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, sharpened, tried_steps
+from dentscope.discrepancy.inference.fit import (
+    expand,
+    fit,
+    fit_anchored,
+    moved_towards,
+    sharpened,
+    tried_steps,
+)
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import _neighbours, without_weight
 from dentscope.discrepancy.inference.together import refined
@@ -80,6 +87,15 @@ def test_a_fit_has_four_rounds(toy) -> None:
     given = toy.problem([0.0], derivative=[[1.0]])
     fit(Restless(given), ())
     assert len(asked) == 4
+
+
+def test_of_the_two_rounds_of_a_pair_the_better_counts(toy, shifted, monkeypatch) -> None:
+    rounds = [replace(shifted(1.0), log_evidence=x) for x in (5.0, 3.0)]
+    monkeypatch.setattr("dentscope.discrepancy.inference.fit.expand", lambda *_: rounds.pop(0))
+    simulator, half = toy.Simulator(toy.problem([0.0])), np.array([0.5])
+    effect = toy.Effect("m", (1.0,))
+    found = fit_anchored(simulator, (effect,), lambda *_: NOWHERE, z=np.zeros(1), place=half)
+    assert (found.log_evidence, rounds) == (5.0, [])
 
 
 def test_where_outcomes_jump_a_cell_is_looked_at_2_5_and_10_per_cent_aside(toy) -> None:
