@@ -10,7 +10,6 @@ D. Tabor, The Hardness of Metals (1951).
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -31,22 +30,30 @@ RATE = 0.4
 
 STRAIN = REPRESENTATIVE  # of (a - a_c)/R
 
+Relative = Callable[..., Array]
+"""Strength over the stated one at the depths of a table, (nodes,): of scene, table and numbers."""
+
 
 @dataclass(frozen=True, slots=True)
-class Fallen:
-    """One over another profile: a strength that falls where that one rises, and stays above 0."""
+class StrengthProfile:
+    """A relative strength over the depth, with its numbers in one impact."""
 
-    risen: FlowStress
+    of: Relative
+    numbers: tuple[float, ...]
+    falls: bool = False  # one over it, which falls where that rises and stays above 0
 
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        return np.asarray(1.0 / self.risen.profile(scene, table))
+        found = self.of(scene, table, *self.numbers)
+        return np.asarray(1.0 / found if self.falls else found)
 
 
 class FlowMechanism(Mechanism):
     """A mechanism that changes the flow stress; subclasses say by what profile."""
 
     static: ClassVar[bool] = True
+    falls: ClassVar[bool] = False
+    relative: ClassVar[Relative]
     direction: ClassVar[Mapping[str, int]] = {
         "restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1,
     }  # fmt: skip
@@ -57,9 +64,10 @@ class FlowMechanism(Mechanism):
             return "the bodies have no yield strength"
         return ""
 
-    @abstractmethod
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the flow stress of this impact."""
+        """Return the flow stress of this impact: `relative` of the parameters in their order."""
+        numbers = tuple(values[p.name] for p in self.parameters)
+        return StrengthProfile(self.relative, numbers, self.falls)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Multiply the flow stress that the scene has."""

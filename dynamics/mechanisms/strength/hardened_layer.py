@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 from ....core.arrays import Array
-from ...scene import FlowStress, Scene
+from ...scene import Scene
 from ...strength import StrengthTable
 from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import FallingStrength, FlowMechanism
 
 
-@dataclass(frozen=True, slots=True)
-class LayerProfile:
+def _layered(scene: Scene, table: StrengthTable, rise: float, thickness: float) -> Array:
     """1 + k exp(-z/t) at z = a/2, the depth of the largest shear."""
+    return np.asarray(1.0 + rise * np.exp(-0.5 * table.radius / thickness))
 
-    rise: float
-    thickness: float
 
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        return np.asarray(1.0 + self.rise * np.exp(-0.5 * table.radius / self.thickness))
+def _softened(scene: Scene, table: StrengthTable, fall: float, thickness: float) -> Array:
+    return _layered(scene, table, -fall, thickness)
 
 
 class HardenedLayer(FlowMechanism):
@@ -45,7 +42,7 @@ class HardenedLayer(FlowMechanism):
             literature=Literature(1.5e-4, "a machined skin"),
         ),
     )  # fmt: skip
-
+    relative = staticmethod(_layered)
     reads: ClassVar[tuple[str, ...]] = ("layer_thickness_m",)
 
     def stated(self, around: Surroundings) -> Values:
@@ -61,10 +58,6 @@ class HardenedLayer(FlowMechanism):
         one, two = self.parameters
         return one, replace(two, low=0.5 * stated, high=2.0 * stated, source="stated in set.toml")
 
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return LayerProfile(values["layer_hardening"], values["layer_thickness_m"])
-
 
 class SofterSurface(FallingStrength):
     """A surface softer than the bulk: decarburised, overaged, plated with a soft metal."""
@@ -79,7 +72,4 @@ class SofterSurface(FallingStrength):
         ),
         HardenedLayer.parameters[1],
     )  # fmt: skip
-
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return LayerProfile(-values["layer_softening"], values["layer_thickness_m"])
+    relative = staticmethod(_softened)

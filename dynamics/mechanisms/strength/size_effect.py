@@ -4,28 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ....core.arrays import Array
 from ...rules import RULES
-from ...scene import FlowStress, Scene
+from ...scene import Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
-from ..base import Parameter, Situation, Surroundings, Values
+from ..base import Parameter, Situation
 from .flow_stress import FlowMechanism
 
 
-@dataclass(frozen=True, slots=True)
-class SizeProfile:
+def _sized(scene: Scene, table: StrengthTable, length: float) -> Array:
     """sqrt(1 + R*/R), the same at every depth."""
-
-    length: float
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        return np.full(table.depth.shape, math.sqrt(1.0 + self.length / scene.pair.R))
+    return np.full(table.depth.shape, math.sqrt(1.0 + length / scene.pair.R))
 
 
 class SizeEffect(FlowMechanism):
@@ -41,6 +34,7 @@ class SizeEffect(FlowMechanism):
             "annealed iridium, less for stronger metals; up to ten times that",
         ),
     )  # fmt: skip
+    relative = staticmethod(_sized)
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields, tips of different radius, and small contacts."""
@@ -63,10 +57,6 @@ class SizeEffect(FlowMechanism):
     def idle(self, situations: Sequence[Situation]) -> str:
         """One radius is enough to be told of."""
         return super().applies(situations)
-
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return SizeProfile(values["size_length_m"])
 
 
 def _contact(scene: Scene) -> float:

@@ -3,45 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
 from ....core.arrays import Array
 from ....core.inputs.flow_curve import SPECIMENS, Rise
 from ...rules import RULES
-from ...scene import FlowStress, Scene
+from ...scene import Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism
+from .flow_stress import RATE, FallingStrength, FlowMechanism
 
 REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
 
 
-@dataclass(frozen=True, slots=True)
-class RateProfile:
-    """1 + A (r/1000)^n with r = 0.4 v(depth)/a: the rate falls as the impact slows down.
+def risen(scene: Scene, table: StrengthTable, rise: float, exponent: float, *_kept: float) -> Array:
+    """1 + A (r / 1000 s^-1)^n at r = 0.4 v(depth)/a: the rate falls as the impact slows down.
 
     At the turning point the metal keeps the strength of the rate just before it: a strength taken
     from the vanishing rate itself would turn the effect on restitution round.
     """
-
-    rise: float
-    exponent: float
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        if scene.press is not None:
-            # without a stated rate a press is what the strength was measured at
-            pace = scene.press.rate / REFERENCE_RATE
-            risen = self.rise * pace**self.exponent if pace else 0.0
-            return np.full(table.depth.shape, 1.0 + risen)
-        deepest = table.peak(energy(scene))
-        slowing = 1.0 - (table.depth / deepest) ** 2
-        speed = scene.approach.speed * np.sqrt(np.maximum(slowing, RULES.slowest**2))
-        rate = RATE * speed / table.radius
-        return np.asarray(1.0 + self.rise * (rate / REFERENCE_RATE) ** self.exponent)
+    if scene.press is not None:
+        # without a stated rate a press is what the strength was measured at
+        pace = scene.press.rate / REFERENCE_RATE
+        return np.full(table.depth.shape, 1.0 + (rise * pace**exponent if pace else 0.0))
+    deepest = table.peak(energy(scene))
+    slowing = 1.0 - (table.depth / deepest) ** 2
+    speed = scene.approach.speed * np.sqrt(np.maximum(slowing, RULES.slowest**2))
+    rate = RATE * speed / table.radius
+    return np.asarray(1.0 + rise * (rate / REFERENCE_RATE) ** exponent)
 
 
 def rises_misfit(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
@@ -88,6 +81,7 @@ class StrainRateHardening(FlowMechanism):
             literature=Literature(1.0, "the strength of the rate, as the law is used in statics"),
         ),
     )  # fmt: skip
+    relative = staticmethod(risen)
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Flow curves at several rates leave the rises within two deviations of the best."""
@@ -117,10 +111,6 @@ class StrainRateHardening(FlowMechanism):
         less = times(scene.force.recovery_factors, back / whole)
         return found.with_(force=replace(found.force, recovery_factors=less))
 
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> RateProfile:
-        """Return the profile of this mechanism."""
-        return RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
-
 
 class NegativeRateSensitivity(FallingStrength):
     """The flow stress falls with the strain rate: dynamic strain ageing (aluminium-magnesium)."""
@@ -135,7 +125,5 @@ class NegativeRateSensitivity(FallingStrength):
         ),
         Parameter("fall_exponent", "-", 0.03, 0.4, "linear", 0.0, "as of hardening", nodes=3),
     )  # fmt: skip
-
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return Fallen(RateProfile(values["fall_at_1000_per_s"], values["fall_exponent"]))
+    falls: ClassVar[bool] = True
+    relative = staticmethod(risen)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -15,24 +14,17 @@ from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..arithmetic import density_of, energy
 from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import STRAIN, FlowMechanism, strain
+from .flow_stress import STRAIN, FlowMechanism, StrengthProfile, strain
 
 
-@dataclass(frozen=True, slots=True)
-class HeatProfile:
+def _heated(
+    scene: Scene, table: StrengthTable, exponent: float, heat: float, temperature: float,
+    ambient: float, melting: float,
+) -> Array:  # fmt: skip
     """1 - T*^m over that at the reference temperature."""
-
-    heat: float
-    exponent: float
-    temperature: float
-    ambient: float
-    melting: float
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        hot = self.temperature - self.ambient + self.heat * strain(scene, table)
-        share = np.clip(hot / (self.melting - self.ambient), 0.0, RULES.hottest)
-        return np.asarray(1.0 - share**self.exponent)
+    hot = temperature - ambient + heat * strain(scene, table)
+    share = np.clip(hot / (melting - ambient), 0.0, RULES.hottest)
+    return np.asarray(1.0 - share**exponent)
 
 
 class ThermalSoftening(FlowMechanism):
@@ -86,11 +78,8 @@ class ThermalSoftening(FlowMechanism):
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
-        heat = _heat(scene, around)
-        return HeatProfile(
-            heat, values["softening_exponent"], around.temperature, around.ambient,
-            _melting(around),
-        )  # fmt: skip
+        about = _heat(scene, around), around.temperature, around.ambient, _melting(around)
+        return StrengthProfile(_heated, (values["softening_exponent"], *about))
 
 
 def _melting(around: Surroundings) -> float:

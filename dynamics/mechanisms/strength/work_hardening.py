@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from ....core.arrays import Array
 from ....models.anchored import AnchoredLaw
 from ....models.hardening import mean_over_strains
-from ...scene import FlowStress, Scene
+from ...scene import Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
-from ..base import Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import Fallen, FallingStrength, FlowMechanism, settled_strain, strain
+from ..base import Literature, Parameter, Situation
+from .flow_stress import FallingStrength, FlowMechanism, settled_strain, strain
 
 
 def measured_further(situations: Sequence[Situation]) -> str:
@@ -37,21 +37,14 @@ def measured_further(situations: Sequence[Situation]) -> str:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class StrainProfile:
+def _hardened(scene: Scene, table: StrengthTable, rise: float, exponent: float) -> Array:
     """Mean of 1 + K p^n over the strains under the contact, as the law of metals that harden."""
+    rise = rise * mean_over_strains(exponent)
 
-    rise: float
-    exponent: float
+    def strength(p: Array) -> Array:
+        return np.asarray(1.0 + rise * p**exponent)
 
-    def profile(self, scene: Scene, table: StrengthTable) -> Array:
-        """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        rise = self.rise * mean_over_strains(self.exponent)
-
-        def strength(p: Array) -> Array:
-            return np.asarray(1.0 + rise * p**self.exponent)
-
-        return strength(settled_strain(scene, table, strength))
+    return strength(settled_strain(scene, table, strength))
 
 
 class WorkHardening(FlowMechanism):
@@ -73,14 +66,11 @@ class WorkHardening(FlowMechanism):
             literature=Literature(0.36, "n of 1006 steel, Johnson and Cook 1983"),
         ),
     )  # fmt: skip
+    relative = staticmethod(_hardened)
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields, and no flow curve that says what it does."""
         return super().applies(situations) or measured_further(situations)
-
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return StrainProfile(values["hardening_ratio"], values["hardening_exponent"])
 
 
 class StrainSoftening(FallingStrength):
@@ -96,11 +86,9 @@ class StrainSoftening(FallingStrength):
         ),
         Parameter("softening_power", "-", 0.15, 1.0, "linear", 1.0, "as of hardening", nodes=3),
     )  # fmt: skip
+    falls: ClassVar[bool] = True
+    relative = staticmethod(_hardened)
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields, and no flow curve that says what it does."""
         return super().applies(situations) or measured_further(situations)
-
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
-        """Return the profile of this mechanism."""
-        return Fallen(StrainProfile(values["softening_ratio"], values["softening_power"]))

@@ -15,7 +15,7 @@ from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.dynamics.mechanisms.rod_vibration import axial_modes
 from dentscope.dynamics.mechanisms.roughness import Layer
-from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import RateProfile
+from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import risen
 from dentscope.dynamics.report.band import _shifted, _sizes, band_of, last_blow
 from dentscope.dynamics.strength import strength_table
 from dentscope.dynamics.surface import Imprint, Spot, beside
@@ -184,7 +184,7 @@ def test_at_the_turn_the_rate_is_a_fifth_of_that_at_the_touch():
     """1 + A (r/1000)^n with n = 1: r = 0.4 v/a at the touch, 0.08 v/a from the turn on."""
     given = scene(speed=3.0)
     table = strength_table(given.law, given.pair)
-    rate = (RateProfile(1.0, 1.0).profile(given, table) - 1.0) * 1e3
+    rate = (risen(given, table, 1.0, 1.0) - 1.0) * 1e3
     assert rate[0] * table.radius[0] == pytest.approx(0.4 * 3.0, rel=1e-6)
     assert rate[-1] * table.radius[-1] == pytest.approx(0.08 * 3.0, rel=1e-9)
 
