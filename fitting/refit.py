@@ -2,7 +2,7 @@
 
 tables of the cases -> regression -> correction -> left out one by one -> the law of metals that
 harden -> judged on cases that no fit reads. `coefficients.write_coefficients` writes the content;
-the file is a law wherever one is named (`models.law_file`).
+the file is a law wherever one is named (`models.table_file`).
 """
 
 from __future__ import annotations

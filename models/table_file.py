@@ -60,7 +60,7 @@ class _TableFile(InputTable):
 
 
 def write_table(table: PairTable, path: Path) -> Path:
-    """Write a pair's table for `read_table` and `law_file.read_law`."""
+    """Write a pair's table for `read_table` and `read_law`."""
     content = {
         "format": FORMAT,
         "radius_m": table.pair.R,

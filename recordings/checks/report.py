@@ -13,9 +13,8 @@ from ..recording_set import RecordingSet
 from .contact import check_contact_size, check_duration, check_energy, check_force, check_strength
 from .findings import Finding, Severity
 from .momentum import check_momentum
-from .motion import check_friction, check_impulse, check_mass, check_speed
+from .motion import check_friction, check_impulse, check_mass, check_speed, check_trace
 from .press import check_press_depths, check_press_load, check_press_recovery
-from .trace import check_trace
 from .trial_view import Check
 
 CHECKS: tuple[Check, ...] = (

@@ -64,7 +64,7 @@ EXACT = {
     "recordings/checks/limits.py": "FULLY_PLASTIC FIRST_BENDING",
     "recordings/checks/press.py": "LOAD_CLASS",
     "recordings/checks/rigid.py": "_TURNING",
-    "recordings/checks/trace.py": "_ELASTIC _PLASTIC",
+    "recordings/checks/motion.py": "_ELASTIC _PLASTIC",
     "recordings/fetch.py": "_PIECE",
     "recordings/questions.py": "_NITROGEN",
     "recordings/trials.py": "NORMAL",

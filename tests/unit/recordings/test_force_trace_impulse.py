@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from dentscope.recordings.checks.findings import Severity
-from dentscope.recordings.checks.trace import check_trace
+from dentscope.recordings.checks.motion import check_trace
 from made_sets import STEEL, made_set
 
 MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6

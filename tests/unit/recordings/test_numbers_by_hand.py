@@ -17,13 +17,13 @@ from dentscope.recordings.checks.motion import (
     check_impulse,
     check_mass,
     check_speed,
+    check_trace,
 )
 from dentscope.recordings.checks.press import (
     check_press_depths,
     check_press_load,
     check_press_recovery,
 )
-from dentscope.recordings.checks.trace import check_trace
 from dentscope.recordings.checks.trial_view import TrialReading
 from dentscope.recordings.noise import noise_of
 from made_sets import BALL, STEEL, made_set
