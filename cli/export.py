@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
+from .laws import laws_named
 from .shared.groups import group
 from .shared.places import folder_option, misused
 from .shared.terminal import new_console, say, show_table
@@ -87,10 +88,9 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     from ..dynamics.export.discrete_elements import HEAD, substitutes, table
     from ..dynamics.export.lammps import lammps_lines
     from ..dynamics.report.band import too_deep
-    from ..models import law_named
     from ..models.choose import follows_flow
 
-    chosen = ball.by(law_named(law or ball.law))
+    chosen = ball.by(*laws_named([law or ball.law]))
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds, asked=ball.asked)
     shown, between = new_console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))

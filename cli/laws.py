@@ -68,9 +68,7 @@ def list_laws() -> None:
 @app.command()
 def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list`.")]) -> None:
     """One law: source, equations, range, what was read, and what it breaks."""
-    from ..models import law_named
-
-    chosen = law_named(law)
+    [chosen] = laws_named([law], key="LAW")
     lines = {
         "law": chosen.name,
         "law of": chosen.title,

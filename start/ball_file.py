@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.approach import speeds_at_touch
 from ..core.errors import InputError
 from ..core.inputs.toml_input import read_toml
 from ..core.inputs.unused_keys import unused_keys
@@ -24,12 +25,12 @@ from ..models.base import ContactLaw
 from .case_file import metal_keys, read_pair
 
 _STRIKER = ("shape", "tip_radius_m", "mass_kg", "radius_m", "density_kg_m3", "hardness_Pa")
+_OF_A_RANGE = ("", ".from", ".to", ".count", ".spacing")
 _OF_IMPACT = (
     metal_keys("target") | metal_keys("strikers.NAME") | {f"strikers.NAME.{k}" for k in _STRIKER}
     | {"target.shape", "target.law", "target.hardness_Pa", "friction.coefficient"}
     | {"impact.striker", "impact.impact_speed_m_s", "impact.drop_height_m", "gravity_m_s2"}
-    | {"sweep.impact_speed_m_s"}
-    | {f"sweep.impact_speed_m_s.{k}" for k in ("from", "to", "count", "spacing")}
+    | {f"sweep.{one}{k}" for one in ("impact_speed_m_s", "drop_height_m") for k in _OF_A_RANGE}
 )  # fmt: skip
 _OF_CASE = (
     metal_keys("sphere") | metal_keys("flat")
@@ -97,8 +98,10 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
         )
     law = FOLLOWING if curves_in(setup.file) else "fitted"
     scene = setup.plain(LAWS[law])
-    speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
-    falls = setup.file.impact.drop_height_m is not None
+    heights, of = setup.sweep.drop_height_m, setup.stated
+    fallen, _ = speeds_at_touch(math.nan, heights, of.angle, False, gravity=of.gravity)
+    speeds = setup.sweep.impact_speed_m_s or tuple(fallen.tolist()) or (scene.approach.speed,)
+    falls = heights or setup.file.impact.drop_height_m is not None
     used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
     if setup.second is not None:
         used = used | {"target.radius_m", "target.mass_kg", "target.density_kg_m3"}

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from ..core.arrays import numbers, one_number
-from ..core.errors import InputError
+from ..core.errors import InputError, shortened
 from ..core.inputs.input_file import path_of
 from ..core.inputs.templates import KINDS, template
 from ..core.inputs.toml_input import read_toml
@@ -130,6 +130,8 @@ def sweep(
     >>> sweep("ball", law="hertz", speed=[1.0, 2.0])["restitution"].round(6).tolist()
     [1.0, 1.0]
     """
+    if not isinstance(over, Mapping | None):
+        raise InputError(shortened(repr(over), 80), key="over", allowed="{'target.nu': [0.2, 0.3]}")
     given = {**locals(), **(over or {})}
     given = {k: v for k, v in given.items() if k not in _NOT_SWEPT and v is not None}
     if over and isinstance(setup, Pair):

@@ -6,12 +6,13 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from ..core.errors import InputError
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.input_file import file_beside
+from ..core.inputs.ranges import RADII
 from ..core.inputs.toml_input import InputTable, Listed, parse_model, read_toml
 from ..core.material import Material, Pair
 from ..core.rig import FrictionTable, MaterialTable, value_of
@@ -103,7 +104,7 @@ class _Accuracy(InputTable):
 class CaseFile(InputTable):
     """The keys of CASE.toml."""
 
-    radius_m: float = Field(ge=1e-9, le=3.0)
+    radius_m: Annotated[float, AfterValidator(RADII)]
     """Radius of the sphere."""
     sphere: CaseBody
     """What presses."""

@@ -37,8 +37,8 @@ _LEFT_OUT = "may be left out"
 _UNITS = {
     "kg_m3": "kg/m^3", "J_kgK": "J/(kg K)", "J_m3K": "J/(m^3 K)", "Pa_s": "Pa s",
     "kg_m2": "kg m^2", "N_s_m": "N s/m", "N_m": "N/m", "rad_s": "rad/s", "m_s2": "m/s^2",
-    "m_s": "m/s", "1_s": "1/s", "deg": "degrees", "Pa": "Pa", "kg": "kg", "K": "K", "m": "m",
-    "s": "s", "N": "N", "Ns": "N s", "Hz": "Hz",
+    "m_s": "m/s", "1_s": "1/s", "per_s": "1/s", "deg": "degrees", "Pa": "Pa", "kg": "kg", "K": "K",
+    "m": "m", "s": "s", "N": "N", "Ns": "N s", "Hz": "Hz",
 }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -139,7 +140,7 @@ def read_flow_curve(
         for row, cell, value in zip(table.rows, table.cells[name], values[k], strict=True):
             if not cell:
                 problems.add("empty", row=row, column=name, allowed="a number")
-            elif known and (wanted := known.wanted(value)):
+            elif known and not math.isnan(value) and (wanted := known.wanted(value)):
                 problems.add(f"{value:g}", row=row, column=name, allowed=wanted)
             elif value < 0.0 or (value == 0.0 and k):
                 problems.add(f"{value:g}", row=row, column=name, allowed="above 0")

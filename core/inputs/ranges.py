@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arrays import one_number
 from ..errors import InputError
@@ -13,6 +13,8 @@ from ..errors import InputError
 if TYPE_CHECKING:
     from ..material import Material
     from ..rig import Quantity
+
+Stated = TypeVar("Stated", float, "Quantity")
 
 # limit: largest standard deviation over a value that is stated [-]; what is known within e^100
 # either way is not known: leave it out
@@ -24,19 +26,21 @@ BEST_KNOWN = 1e-7
 
 @dataclass(frozen=True)
 class Within:
-    """Accepts quantities of a range; says which in `allowed`, for errors and the reference."""
+    """Accepts what is of a range; says which in `allowed`, for errors and the reference."""
 
     accept: Callable[[float], bool]
     allowed: str
     units: tuple[tuple[str, float], ...] = ()
 
-    def __call__(self, quantity: Quantity) -> Quantity:
-        """Return the quantity if it lies in the range."""
-        if wanted := self.wanted(quantity.value):
+    def __call__(self, quantity: Stated) -> Stated:
+        """Return the quantity, or the number, if it lies in the range."""
+        stated: Any = quantity
+        if wanted := self.wanted(getattr(stated, "value", stated)):
             raise ValueError(wanted)
-        if quantity.relative > LEAST_KNOWN:
+        relative = getattr(stated, "relative", 0.0)
+        if relative > LEAST_KNOWN:
             raise ValueError(f"a std of at most {LEAST_KNOWN:g} times the value")
-        if 0.0 < quantity.relative < BEST_KNOWN:
+        if 0.0 < relative < BEST_KNOWN:
             raise ValueError(f"0, or a std from {BEST_KNOWN:g} times the value on, in its unit")
         return quantity
 

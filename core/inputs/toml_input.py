@@ -122,7 +122,7 @@ def parse_model(content: dict[str, Any], model: type[Model], *, source: str) -> 
         wrong = [_as_input_error(item, model, source) for item in failure.errors()[:_MISTAKES]]
         if more := failure.error_count() - len(wrong):
             wrong.append(InputError(f"{more} more mistakes", source=source))
-        raise InputErrors(tuple(wrong)) from None
+        raise InputErrors(tuple({str(one): one for one in wrong}.values())) from None
 
 
 def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputError:
@@ -135,6 +135,8 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
         hint = _meant(model, str(location[-1]), known)
         allowed = ", ".join(known)
         return InputError(f"unknown key{hint}", source=source, key=key, allowed=allowed)
+    if item["type"] in ("model_type", "dict_type"):
+        return _no_table(item["input"], location, model, source)
     message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
     if item["type"] in ("list_type", "tuple_type", "too_short"):
         table = isinstance(item["input"], dict)
@@ -152,6 +154,23 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
     # TOML has no null: a validator that complains of None misses the key
     found = "missing" if given is None else _shown(given)
     return InputError(found, source=source, key=key, allowed=message)
+
+
+def _no_table(
+    given: Any, location: tuple[Any, ...], model: type[BaseModel], source: str
+) -> InputError:
+    """Refuse what stands where a table belongs; once for all keys under `[strikers]` alone."""
+    found: Any = model
+    for place, part in enumerate(location, start=1):
+        field = found.model_fields.get(str(part)) if _is_table(found) else None
+        found = table_in(field.annotation) if field else None
+        named = field is not None and "dict[" in str(field.annotation)
+        if found and named and place >= len(location) - 1:
+            key = ".".join(map(str, location[:place]))
+            return InputError("no table of a name", source=source, key=key, allowed=f"[{key}.NAME]")
+    key = ".".join(map(str, location))
+    header = f"[{key}]" if isinstance(location[-1], str) else f"[[{location[-2]}]]"
+    return InputError(_shown(given), source=source, key=key, allowed=f"a table, {header}")
 
 
 def _shown(value: Any) -> str:

@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field, field_validator
 
 from ...core.errors import InputError, InputErrors
-from ...core.inputs.ranges import LEAST_KNOWN
+from ...core.inputs.ranges import LEAST_KNOWN, SPEEDS, span
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
 from ...core.unstated import unstated_equal
@@ -62,7 +62,7 @@ class _TrialTable(InputTable):
     """Name of the trial."""
     angle_deg: float = Field(gt=0.0, lt=90.0)
     """Between the rod's axis and the flat."""
-    impact_speed_m_s: float = Field(ge=1e-9, le=2e4)
+    impact_speed_m_s: Annotated[float, AfterValidator(SPEEDS)]
     """Speed of the tip along the flat's normal."""
     rebound_m_s: float | None = None
     """Speed of the centre of mass after, where it was measured."""
@@ -70,9 +70,9 @@ class _TrialTable(InputTable):
     """Tangential over normal impulse."""
     restitution: float = Field(ge=0.0, le=2.0)
     """Rebound over approach speed of the tip."""
-    permanent_depth_m: float = Field(ge=1e-12, le=0.1)
+    permanent_depth_m: Annotated[float, AfterValidator(span(1e-12, 0.1, um=1e-6))]
     """Depth of the crater."""
-    sliding_length_m: float = Field(ge=1e-12, le=1.0)
+    sliding_length_m: Annotated[float, AfterValidator(span(1e-12, 1.0, um=1e-6))]
     """Path of the touching point along the flat; a scar's length less its width is not it."""
 
 

@@ -35,6 +35,7 @@ def test_ranges_units_and_defaults_come_from_the_schema():
     assert found["[impact]", "modes"].default == "default: 0"
     assert found["[strikers.NAME]", "tip_radius_m"].default == ""
     assert '"half-space"' in found["[impact]", "support"].allowed
+    assert {k.name: k for k in keys_of("trials")}["press_rate_per_s"].allowed.endswith("[1/s]")
 
 
 @pytest.mark.parametrize(

@@ -157,6 +157,7 @@ fit --out words.txt
 fit --judge absent
 fit --judge words.txt
 export law --out words.txt
+export dem ball.toml --law nonsense
 examples --to words.txt
 examples extra
 keys nonsense
@@ -194,7 +195,9 @@ SAID = {
     "reduce table --holds force": "--list", "reduce sound folder": "no raw file",
     "impact absent.toml": "no such file", "impact ball.toml --law nonsense": "no law 'nonsense'",
     "laws compare case.toml --law kelvin-voigt": "leaves no dent",
-    "laws show nonsense": "hertz, johnson", "laws show wang": "not offered",
+    "laws show nonsense": "line: LAW: no law 'nonsense' (allowed: hertz, johnson",
+    "export dem ball.toml --law nonsense": "line: --law: no law 'nonsense'",
+    "laws show wang": "not offered",
 }  # fmt: skip
 
 

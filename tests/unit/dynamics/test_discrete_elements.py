@@ -245,6 +245,14 @@ def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
     assert found["with"] > 1.2 * found["without"]
 
 
+def test_heights_of_a_sweep_are_the_speeds_of_their_falls(tmp_path):
+    falls = BALL.split("support")[0].replace("impact_speed_m_s = 1.0", "drop_height_m = 1.0")
+    swept = falls + "[sweep]\ndrop_height_m = [0.05, 0.2]\n"
+    ball = read_ball(put(tmp_path / "ball.toml", swept))
+    assert ball.speeds == pytest.approx([math.sqrt(0.981), math.sqrt(3.924)], rel=1e-12)
+    assert not any("drop_height_m" in key for key in ball.unused)
+
+
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, errs):
     file = put(tmp_path / "rod.toml", template("rod"))
     assert 'strikers.rod.shape: a rod (allowed: "sphere")' in errs("export", "dem", file)

@@ -310,6 +310,9 @@ def test_file_and_command(tmp_path: Path, errs) -> None:
     assert row.inferred.duration == pytest.approx(1.38e-3, rel=0.01)
     assert run(["inverse", str(file), "--out", str(tmp_path)]) == 0
     assert (tmp_path / "trials-inverse.csv").exists()
+    file.write_text(INVERSE.replace("1650e-6", "1650"))
+    assert "sliding_length_m: 1650 " in (told := errs("inverse", file, "--out", tmp_path))
+    assert "1650 um would be 0.00165" in told
     file.write_text(INVERSE.replace("0.13", "0.9"))
     told = errs("inverse", file, "--out", tmp_path)
     assert "trial T01: friction_impulse_ratio: 0.9 makes the tip stick" in told

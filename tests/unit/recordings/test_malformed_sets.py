@@ -95,6 +95,14 @@ CASES = {
     "no striker": (
         {"toml": SET.split("[strikers")[0]}, r"strikers: missing"
     ),
+    "striker without a name": (
+        toml("[strikers.rod]", "[strikers]"),
+        r"^[^\n]*strikers: no table of a name \(allowed: \[strikers\.NAME\]\)$",
+    ),
+    "number for a table": (
+        toml("[target]", "friction = 0.3\n[target]"),
+        r"friction: 0\.3 \(allowed: a table, \[friction\]\)",
+    ),
     "shape left out": (toml('shape = "rod"\n', ""), r"strikers\.rod\.shape: missing"),
     "modulus in GPa": (
         toml("value = 2.0e11", "value = 200"),

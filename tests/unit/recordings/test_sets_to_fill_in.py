@@ -132,6 +132,7 @@ def test_a_flow_curve_gives_the_strength_and_comes_along(folder, tmp_path):
         ("plastic_strain,true_stress_Pa\n0,3e8\n20,4e8\n", "row 3.*20 % would be 0.2"),
         ("plastic_strain,true_stress_Pa\n0,3e8\n8.76,4e8\n", "to 3; 8.76 % would be 0.0876"),
         ("plastic_strain,true_stress_Pa\n0,\n1,4e8\n", "row 2.*empty"),
+        ("plastic_strain,true_stress_Pa\n0,3e8\n1,abc\n", r"^[^\n]*row 3[^\n]*'abc'[^\n]*$"),
     ],
 )
 def test_mistakes_in_a_flow_curve_name_their_row(tmp_path, text, words):

@@ -148,6 +148,7 @@ WRONG = [
     ("Sy_Pa = 300e6", "Sy_Pa = 0", ["flat.Sy_Pa"]),
     ("radius_m = 0.002", "radius_m = 0", ["radius_m"]),
     ("radius_m = 0.002", "", ["radius_m", "missing"]),
+    ("radius_m = 0.002", "radius_m = 20", ["radius_m: 20", "20 mm would be 0.02"]),
     ("max_delta_over_R = 3e-4", "max_delta_over_R = 3", ["load.max_delta_over_R"]),
     ("unload_from = [3e-4]", "unload_from = [0.1]", ["load.unload_from"]),
     # legal numbers that coordinates in double precision cannot carry

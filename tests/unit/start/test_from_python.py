@@ -136,6 +136,8 @@ def test_a_pair_is_struck_at_one_speed_or_several():
         ds.impact(ds.Pair(soft, hard, 5e-3), speed=1.0)
     with pytest.raises(InputError, match="over: with a pair"):
         ds.sweep(pair, over={"target.nu": [0.2, 0.3]})
+    with pytest.raises(InputError, match=r"over: \[0.3\] .*'target.nu': "):
+        ds.sweep("ball", over=[0.3])
     for wrong in ([], [1.0, math.nan], "2", -1.0, 0.0):
         for call in (ds.impact, ds.sweep):
             with pytest.raises(InputError):
