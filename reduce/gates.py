@@ -27,6 +27,6 @@ def is_restitution(value: Measured) -> bool:
 class Refused(InputError):
     """A record that gives no number, and what draws it with the reason."""
 
-    def __init__(self, found: str, *, source: str, allowed: str, key: str = "value") -> None:
+    def __init__(self, found: str, *, source: str, allowed: str, key: str = "") -> None:
         super().__init__(found, source=source, key=key, allowed=allowed)
         self.draw: Callable[[Path], None] | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from ..shared.regression import unit_covariance
 from .columns import PressRecord
 from .curve import contact_zero, left_depth, stiffness
 from .cycles import Cycle, cycles_of, noise_of
+
+# limit: way in the air at least, in that of the whole record [-]; a preload creeps less
+_AIR = 0.05
 
 
 @dataclass(frozen=True)
@@ -86,9 +89,10 @@ def reduce_press(
     `compliance` is the machine's, still in the depth [m/N]; none takes the file's, or that of
     several cycles. `load_std` is of the largest load [N].
     """
-    load, noise = record.load, noise_of(record.load)
-    cycles = cycles_of(record)
-    notes = []
+    noise = noise_of(record.load)
+    record, tare = _tared(record, noise)
+    load, cycles = record.load, cycles_of(record)
+    notes = [f"the load cell shows {tare:.4g} N in the air: taken off"] if tare else []
     slopes = [stiffness(load, record.depth, c) for c in cycles]
     whole = min((1.0 / s.value for s in slopes if s.value > 0.0), default=math.inf)
     if compliance is not None and not compliance.value < whole:
@@ -126,6 +130,22 @@ def reduce_press(
     )
     notes += _told(record, presses)
     return PressReduction(record, depth, zero, compliance, presses, tuple(notes))
+
+
+def _tared(record: PressRecord, noise: float) -> tuple[PressRecord, float]:
+    """Return a record without the load before the touch, and that load; 0 where none is seen.
+
+    In the air the depth moves and the load does not; a preload that is held only creeps.
+    """
+    load, depth = record.load, record.depth
+    level = float(np.median(load[: RULES.fewest_level_samples]))
+    touched = np.flatnonzero(np.abs(load - level) > RULES.pulse_over_noise * max(noise, 1e-12))
+    air = int(touched[0]) if touched.size else 0
+    far = air and np.ptp(depth[:air]) > _AIR * np.ptp(depth)
+    if air < RULES.fewest_level_samples or not far or abs(level) <= 2.0 * noise:
+        return record, 0.0
+    level = float(np.median(load[:air]))
+    return replace(record, load=load - level), level
 
 
 def _press(

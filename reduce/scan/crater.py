@@ -32,7 +32,7 @@ class Crater:
     - `length`, `width`: between the walls at the level of the surface: along the scar, and across
       it at the deepest point; nan where a wall leaves the scan.
     - `sliding`: `length - width`.
-    - `volume`: of the part below the surface [m³].
+    - `volume`: of the part below the surface [m³]; nan where that leaves the scan.
     - `deepest`: (2,) place of the deepest point.
     - `direction`: angle of the scar in the scan [rad].
     - `surface`: the levelled scan.
@@ -96,7 +96,7 @@ def reduce_scan(
         )  # fmt: skip
     cell = float(np.prod(scan.step))
     volume = Measured(
-        -float(np.sum(filled(shown.z)[shown.crater])) * cell,
+        math.nan if shown.leaves else -float(np.sum(filled(shown.z)[shown.crater])) * cell,
         bottom.depth.std * float(shown.crater.sum()) * cell,
     )
     return Crater(
@@ -111,8 +111,7 @@ def reduce_scan(
 def _check_whole(found: Levelled, length: Measured, width: Measured, source: str) -> None:
     """Refuse a lowest part that surrounds a hill, or of which no wall leads up within the scan."""
     hill = bool(ndimage.binary_fill_holes(found.crater).sum() > _FILLED * found.crater.sum())
-    inner = float(found.crater[1:-1, 1:-1].sum())
-    cut = inner < found.crater.sum() and math.isnan(length.value) and math.isnan(width.value)
+    cut = found.leaves and math.isnan(length.value) and math.isnan(width.value)
     if hill or cut:
         raise Refused(
             "the lowest part surrounds a hill" if hill else "the lowest part leaves the scan",
@@ -146,8 +145,11 @@ def _notes(scan: Scan, found: Levelled, width: Measured, scale: Measured) -> tup
             f"{100 * found.outliers / scan.z.size:.2g} % spikes taken out, "
             f"{100 * missing / scan.z.size:.2g} % not seen"
         )
+    if found.others:
+        notes.append(f"of {found.others + 1} craters the deepest is read, the others are left out")
     if scale.std == 0.0:
         notes.append("the calibration of the instrument's heights is taken as exact")
     if not math.isfinite(width.value):
-        notes.append("a wall of the crater does not reach the surface within the scan")
+        why = "does not reach the surface within the scan" if found.leaves else "has too few points"
+        notes.append(f"a wall of the crater {why}: no width, no diameter")
     return tuple(notes)

@@ -10,7 +10,10 @@ from io import StringIO
 from itertools import takewhile
 from pathlib import Path
 
+import meshio
 import numpy as np
+from scipy.interpolate import CloughTocher2DInterpolator
+from scipy.spatial import cKDTree
 
 from ...core.arrays import Array
 from ...core.errors import InputError, first_line, missing_extra
@@ -28,6 +31,15 @@ _SCAN_POINTS = 100
 
 # limit: points a byte of a packed file at most [-]: what compression gives of a level plane
 _PACKED_POINTS = 50
+
+# limit: gap between a filling and all heights at least, in their range [-]; -9999 beside um
+_FILLING = 3.0
+
+# limit: distance of a grid point from the next point of a cloud, in steps [-]; a gap is wider
+_OPEN = 1.5
+
+# limit: part of such a grid that is seen at least [-]; a round piece fills three quarters
+_COVERED = 0.5
 
 # limit: points of a scan at most [-]: memory of a small machine
 _SCAN_MOST = 100_000_000
@@ -49,14 +61,14 @@ def read_scan(
     height_unit: str | None = None,
     step: float | None = None,
 ) -> Scan:
-    """Read any file that SurfaceTopography knows, or comma-separated numbers.
+    """Read any file that SurfaceTopography knows, a mesh's points, or comma-separated numbers.
 
     Units of length along the surface and of the heights (by default the same), of `units.LENGTH`,
     and the distance of neighbouring points [m] are for files that name none or a wrong one. A line,
     and a file that does not say them, are refused.
     """
-    found = _text(path) if path.suffix.lower() == ".csv" else _known_format(path)
-    heights = np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan)
+    found = _READERS.get(path.suffix.lower(), _known_format)(path)
+    heights = _without_filling(np.where(np.abs(found.z) < LARGEST_NUMBER, found.z, np.nan))
     if heights.size < _SCAN_POINTS or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
             f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),
@@ -84,6 +96,18 @@ class _Raw:
     step: Array | None = None
     unit: str | None = None
     z_unit: str | None = None
+
+
+def _without_filling(z: Array) -> Array:
+    """Heights without the number that fills points not seen: one, far from all others."""
+    for end in (np.min, np.max):
+        seen = z[np.isfinite(z)]
+        others = seen[seen != end(seen)] if seen.size else seen
+        if seen.size > others.size + 1 and others.size:
+            away = float(np.abs(others - end(seen)).min())
+            if away > _FILLING * float(np.ptp(others)) > 0.0:
+                z = np.where(z == end(seen), np.nan, z)
+    return z
 
 
 def _refuse_far(step: float, path: Path) -> None:
@@ -125,11 +149,11 @@ def _known_format(path: Path) -> _Raw:
         if path.suffix.lower() == ".xyz":
             return _text(path)
         why = first_line(error)
-        told = "" if isinstance(error, LookupError) or why.endswith(": )") else f" ({why})"
+        told = "" if isinstance(error, LookupError) or why.endswith((":", ": )")) else f" ({why})"
         raise InputError(
             f"cannot be read as a surface scan{told}", source=str(path),
             allowed="a whole file of a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, "
-            "mnt, xyz ...), or a grid as CSV",
+            "mnt, xyz ...), points as STL or PLY, or a grid as CSV",
         ) from None  # fmt: skip
 
 
@@ -197,14 +221,46 @@ def _regular(points: Array, path: Path) -> _Raw:
     steps = [np.diff(a) for a in axes]
     even = all(s.size and np.ptp(s) < 0.02 * s.mean() for s in steps)
     if not np.isfinite(points[:, :2]).all() or not even:
-        raise InputError(
-            "the points x, y do not lie on a regular grid", source=str(path),
-            allowed="equal distances along x and along y",
-        )  # fmt: skip
+        return _scattered(points[np.isfinite(points).all(axis=1)], path)
     z = np.full([a.size for a in axes], np.nan)
     index = tuple(np.searchsorted(a, points[:, k]) for k, a in enumerate(axes))
     z[index] = points[:, 2]
     return _Raw(z, step=np.array([s.mean() for s in steps]))
+
+
+def _scattered(points: Array, path: Path) -> _Raw:
+    """Put points anywhere, of a mesh or a cloud, on a grid as fine as they are: cubic between."""
+    size = np.ptp(points[:, :2], axis=0) if len(points) > 3 else np.zeros(2)
+    step = math.sqrt(float(np.prod(size)) / max(len(points), 1))
+    z = np.full((1, 1), np.nan)
+    if 0.0 < step < 0.25 * size.min():
+        low = points[:, :2].min(axis=0)
+        axes = [np.arange(0.0, s, step) for s in size]
+        at = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+        between = CloughTocher2DInterpolator(points[:, :2] - low, points[:, 2])(at)
+        away = cKDTree(points[:, :2] - low).query(at)[0]
+        z = np.where(away < _OPEN * step, between, np.nan)
+    if np.isfinite(z).mean() < _COVERED:
+        raise InputError(
+            f"{len(points)} points x, y that lie on a line, or cover no area", source=str(path),
+            allowed="a map: points all over a surface",
+        )  # fmt: skip
+    return _Raw(z, step=np.full(2, step))
+
+
+def _mesh(path: Path) -> _Raw:
+    """Read the corners of a mesh, heights along its z."""
+    with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        warnings.simplefilter("ignore")
+        try:
+            points = np.asarray(meshio.read(path).points, dtype=np.float64)
+        except (Exception, SystemExit):  # its readers raise what they like, and say little
+            raise InputError(
+                "cannot be read as a mesh", source=str(path), allowed="a whole STL or PLY file"
+            ) from None
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InputError("no points in it", source=str(path), allowed="a whole STL or PLY file")
+    return _regular(np.unique(points, axis=0), path)
 
 
 def _factor(unit: str | None, path: Path) -> float:
@@ -216,3 +272,7 @@ def _a_line(path: Path) -> InputError:
         "heights along a line", source=str(path),
         allowed="a map; a line, as x_m and z_m, belongs into profiles/ of a set, which levels it",
     )  # fmt: skip
+
+
+_READERS = {".csv": _text, ".stl": _mesh, ".ply": _mesh}
+"""By the end of a file's name; all others are what SurfaceTopography makes of them."""

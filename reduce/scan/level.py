@@ -7,6 +7,7 @@ crater and fit are found in turns.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,9 @@ from ...core.errors import InputError
 from ..rules import RULES
 from ..shared.regression import robust_regression, robust_std
 from .file import Scan
+
+# limit: depth and area of another crater at least, in those of the deepest [-]; less is roughness
+_LIKE = 0.2
 
 LEVELS = {"plane": 1, "paraboloid": 2}
 """Shape of the undisturbed surface, and its polynomial degree."""
@@ -29,7 +33,7 @@ class Levelled:
     - `z`: (nx, ny) heights above it, NaN where nothing was seen [m].
     - `crater`, `clear`: (nx, ny) the crater; the surface that it was levelled on.
     - `step`, `terms`: (2,) distance of the points [m]; (nx, ny, p) polynomial terms of the level.
-    - `outliers`: number of spikes taken out.
+    - `outliers`, `others`: number of spikes taken out; of craters beside this one.
     """
 
     z: Array
@@ -38,6 +42,12 @@ class Levelled:
     step: Array
     terms: Array
     outliers: int
+    others: int
+
+    @property
+    def leaves(self) -> bool:
+        """Whether the crater goes on beyond an edge of the scan."""
+        return bool(self.crater[1:-1, 1:-1].sum() < self.crater.sum())
 
     @property
     def roughness(self) -> float:
@@ -58,15 +68,17 @@ def levelled(scan: Scan, *, level: str = "plane") -> Levelled:
     whole = filled(z)
     for _ in range(8):
         surface = _surface(terms, z, clear, 20_000)
-        found = _crater_of(ndimage.gaussian_filter(whole - surface, blur), clear, scan)
+        smooth = ndimage.gaussian_filter(whole - surface, blur)
+        found, *others = _craters_of(smooth, clear, scan)
         same = np.array_equal(found, crater)
         crater = found
-        clear = seen & _outside(crater, scan)
+        clear = seen & _outside((crater, *others), scan)
         if same:
             break
     return Levelled(
-        z - _surface(terms, z, clear, 200_000), crater, clear, scan.step, terms, outliers
-    )
+        z - _surface(terms, z, clear, 200_000), crater, clear, scan.step, terms, outliers,
+        len(others),
+    )  # fmt: skip
 
 
 def filled(z: Array) -> Array:
@@ -100,25 +112,34 @@ def _surface(terms: Array, z: Array, clear: Mask, most: int) -> Array:
     return np.asarray(terms @ fit.coefficients)
 
 
-def _crater_of(smooth: Array, clear: Mask, scan: Scan) -> Mask:
-    """Return the connected region below the surface that holds the deepest place."""
+def _craters_of(smooth: Array, clear: Mask, scan: Scan) -> list[Mask]:
+    """Return connected regions below the surface: that of the deepest place, others like it."""
     noise = robust_std(smooth[clear])
     lowest = np.unravel_index(int(np.argmin(smooth)), smooth.shape)
     depth = -float(smooth[lowest])
-    if not depth > 5.0 * max(noise, 1e-15):
+    least = 5.0 * max(noise, 1e-15)
+    if not depth > least:
         raise InputError(
             f"no crater: the lowest place lies {depth:.3g} m under the surface, whose roughness "
-            f"is {noise:.3g} m", source=scan.source, allowed="a crater deeper than five times that",
+            f"is {noise:.3g} m", source=scan.source,
+            allowed="a crater deeper than five times that; --level paraboloid on a curved surface",
         )  # fmt: skip
-    regions, _ = ndimage.label(smooth < -max(0.03 * depth, min(2.0 * noise, 0.2 * depth)))
-    return np.asarray(regions == regions[lowest])
+    regions, count = ndimage.label(smooth < -max(0.03 * depth, min(2.0 * noise, 0.2 * depth)))
+    every = np.arange(count + 1)
+    area = np.bincount(regions.ravel(), minlength=count + 1)
+    deep = ndimage.minimum(smooth, regions, every) < -max(_LIKE * depth, least)
+    deep &= area > _LIKE * area[regions[lowest]]
+    others = [n for n in every[1:] if deep[n] and n != regions[lowest]]
+    return [regions == n for n in (regions[lowest], *others)]
 
 
-def _outside(crater: Mask, scan: Scan) -> Mask:
-    radius = math.sqrt(float(crater.sum()) / math.pi)
-    away = ndimage.distance_transform_edt(~crater)
-    outside = np.asarray(away > (RULES.clearance - 1.0) * max(radius, 2.0))
-    if (outside & np.isfinite(scan.z)).sum() < RULES.level_points * crater.size:
+def _outside(craters: Sequence[Mask], scan: Scan) -> Mask:
+    outside = np.isfinite(scan.z)
+    for crater in craters:
+        radius = math.sqrt(float(crater.sum()) / math.pi)
+        away = ndimage.distance_transform_edt(~crater)
+        outside &= away > (RULES.clearance - 1.0) * max(radius, 2.0)
+    if outside.sum() < RULES.level_points * outside.size:
         raise InputError(
             "the crater leaves no undisturbed surface to level on", source=scan.source,
             allowed="a scan some 4 crater widths wide",

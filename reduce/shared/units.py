@@ -38,6 +38,7 @@ UNITS: dict[str, dict[str, float]] = {
     "spin": {"rad/s": 1.0, "deg/s": math.radians(1.0), "rpm": math.pi / 30.0, "1/s": math.tau},
     "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "psi": 6894.757293,
                "ksi": 6894757.293},
+    "energy": {"J": 1.0, "mJ": 1e-3, "kJ": 1e3},
     "stiffness": {"N/m": 1.0, "N/mm": 1e3, "mN/nm": 1e6, "N/um": 1e6, "N/µm": 1e6, "kN/mm": 1e6},
     "temperature": {"K": 1.0},
     "mass": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},

@@ -47,7 +47,7 @@ def read_sound(path: Path) -> Sound:
 
 
 def _wave(path: Path) -> tuple[Array, float]:
-    """Return samples and rate of a WAV file, its channels averaged, full scale 1."""
+    """Return samples and rate of a WAV file, its channels mixed, full scale 1."""
     from scipy.io import wavfile
 
     try:
@@ -70,7 +70,16 @@ def _wave(path: Path) -> tuple[Array, float]:
         samples = (samples - 128.0) / 128.0
     elif found.dtype.kind == "i":
         samples /= float(np.iinfo(found.dtype).max) + 1.0
-    return samples if samples.ndim == 1 else samples.mean(axis=1), float(rate)
+    return _mixed(samples), float(rate)
+
+
+def _mixed(samples: Array) -> Array:
+    """Mean of channels (n, channels), each as it swings with the loudest: some are turned."""
+    if samples.ndim == 1 or samples.shape[1] == 1:
+        return samples.ravel()
+    loudest = samples[:, int(np.argmax(samples.var(axis=0)))]
+    turned = (samples - samples.mean(axis=0)).T @ (loudest - loudest.mean()) < 0.0
+    return np.asarray((samples * np.where(turned, -1.0, 1.0)).mean(axis=1))
 
 
 def _check_length(count: int, rate: float, path: Path) -> None:
@@ -90,10 +99,10 @@ def _decoded(path: Path) -> tuple[Array, float]:
 
         stream = container.streams.audio[0]
         rate = int(stream.rate)
-        mono = av.AudioResampler(format="flt", layout="mono", rate=rate)
+        planes = av.AudioResampler(format="fltp", rate=rate)
         for frame in container.decode(stream):
-            for piece in mono.resample(frame):
-                parts.append(piece.to_ndarray().ravel().astype(np.float64))
-                total += parts[-1].size
+            for piece in planes.resample(frame):
+                parts.append(piece.to_ndarray().T.astype(np.float64))
+                total += len(parts[-1])
             _check_length(total, rate, path)
-    return np.concatenate(parts) if parts else np.empty(0), float(rate)
+    return _mixed(np.concatenate(parts)) if parts else np.empty(0), float(rate)

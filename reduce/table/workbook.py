@@ -14,6 +14,8 @@ from xml.etree import ElementTree
 
 from ...core.errors import InputError, missing_extra
 
+_UNCOUNTED = "formula without a stored number"
+
 
 class NumberCell(str):
     """A cell that holds a number and no text: its point is none of thousands."""
@@ -77,7 +79,8 @@ def _put_errors(
 def _errors(path: Path) -> dict[str, dict[tuple[int, int], str]]:
     """Return the errors, as `#DIV/0!`, that cells of each sheet hold, by row and column from 0.
 
-    The reader of workbooks leaves them empty in XLSX; ODS is another archive, XLS is none.
+    And the formulas whose number was not stored. The reader of workbooks leaves both empty in XLSX;
+    ODS is another archive, XLS is none.
     """
     if not zipfile.is_zipfile(path):
         return {}
@@ -93,10 +96,16 @@ def _errors(path: Path) -> dict[str, dict[tuple[int, int], str]]:
         for sheet in book.iterfind(".//{*}sheet"):
             key = next((value for name, value in sheet.items() if name.endswith("}id")), "")
             cells = packed.read(posixpath.normpath(posixpath.join("/xl", targets[key]))[1:])
-            if b't="e"' in cells:  # the quick look spares most sheets the slow one
+            if b't="e"' in cells or b"<f" in cells:  # the quick look spares most the slow one
                 found[sheet.get("name", "")] = {
-                    _place(cell.get("r", "")): cell.findtext("{*}v", "")
-                    for cell in ElementTree.fromstring(cells).iterfind(".//{*}c[@t='e']")
+                    _place(cell.get("r", "")): cell.findtext("{*}v") or _UNCOUNTED
+                    for cell in ElementTree.fromstring(cells).iterfind(".//{*}c")
+                    if cell.get("t") == "e"
+                    or (
+                        cell.find("{*}f") is not None
+                        and not cell.findtext("{*}v")
+                        and cell.get("t") != "str"
+                    )
                 }
     return found
 

@@ -13,12 +13,22 @@ from ...shared.units import quantity_of
 from ..heading import is_unit
 from . import kinds
 from .kinds import CELSIUS, kind_of, unit_of
-from .words import APPROACHES, FROM_NORMAL, UNDERSTOOD, SheetKind, bare
+from .words import (
+    APPROACHES,
+    FROM_NORMAL,
+    REBOUND_ANGLE,
+    REBOUND_SPEED,
+    UNDERSTOOD,
+    SheetKind,
+    bare,
+)  # fmt: skip
 
 NOT_UNDERSTOOD = "left out: not understood"
 ABOVE = "row {}, left out: above the headers"
 _NUMBER = re.compile(r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
 _STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*\(([^)]*)\)")
+_NORMAL = re.compile(r"norm|\bv[ _]?n\b|_n_")
+"""Of a speed along the normal of the flat."""
 _ORDINAL = re.compile(r"\d\.?(st|nd|rd|th|e|er|re|ere|eme|o|a|回目?|次)\.?")
 """Such as 2nd, 2ème, 2º, as `bare` has them."""
 _NAME = re.compile(r"[^\W\d_]\S{0,9}\d+")
@@ -212,7 +222,7 @@ def columns_of(
     quantities = {kind_of(text) for text in head.says if not kinds.is_spread(text)}
     for place, (header, says) in enumerate(zip(head.headers, head.says, strict=True)):
         spread = kinds.is_spread(says)
-        kind = kind_of(says) if kinds.named(says) or not spread else _beside(columns, place, says)
+        kind = kind_of(says) or (_beside(columns, place, says) if spread else None)
         cells = [row[place] for row in rows[head.end :] if row[place]]
         names = sum(_NAME.fullmatch(cell) is not None for cell in cells)
         if kind is None and not columns and header and 2 * names > len(cells):
@@ -237,9 +247,11 @@ def columns_of(
 
 
 def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind | None:
-    """What a spread without a name is of: the number left of it, texts between, in its unit."""
+    """What a spread is of: the number left of it, texts between, in its unit, that it names."""
     for k, column in enumerate(reversed(columns), start=1):
         if column.place == place - k and column.kind.quantity != "text":
+            if kinds.named(says) not in kinds.named(column.header):
+                return None
             same = quantity_of(kinds.said_unit(says)) in ("", column.kind.quantity)
             return column.kind if same else None
     return None
@@ -248,13 +260,18 @@ def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind 
 def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) -> str:
     """Why a column is not taken beside the others; empty where it is."""
     words, name = bare(column.header), column.kind.name
-    if name == "angle_deg" and re.search(FROM_NORMAL, words):
+    if name in ("angle_deg", REBOUND_ANGLE) and re.search(FROM_NORMAL, words):
         raise InputError(
             "an angle from the normal", source=source, key=column.header,
             allowed="that between velocity and flat, or axis and flat: 90 for a normal impact",
         )  # fmt: skip
     if column.kind.quantity == "text":
         return ""
+    if name == REBOUND_ANGLE:
+        beside = {c.kind.name: bare(c.header) for c in columns}
+        speeds = [beside.get(k, "v_n") for k in ("impact_speed_m_s", REBOUND_SPEED)]
+        if "angle_deg" not in beside or any(map(_NORMAL.search, speeds)):
+            return "not beside an angle and speeds along the path"
     same = [c for c in columns if c.kind == column.kind and not c.spread]
     if column.spread:
         alone = sum(c.kind == column.kind and c.spread for c in columns) < len(same)

@@ -25,7 +25,16 @@ from . import words
 from .cell import number_in, why_not
 from .headers import ABOVE, NOT_UNDERSTOOD, SheetColumn
 from .kinds import SUMMARY, SUMS, kind_of
-from .trial import Readings, became, mean_of, naming_of, note_of, restitutions_of, scatter_of
+from .trial import (
+    Readings,
+    along_normal,
+    became,
+    mean_of,
+    naming_of,
+    note_of,
+    restitutions_of,
+    scatter_of,
+)
 from .words import APPROACHES, BODY, UNDERSTOOD, bare
 
 _SIZE = re.compile(r"(?P<a>\d[\d.,]*)\s*(?P<b>[^\W\d_]+)|[(\[](?P<d>\w+)[)\]]\W*(?P<c>\d[\d.,]*)")
@@ -34,7 +43,7 @@ _CLAUSE = re.compile(r"[^,;\d]*")
 _BALLS = [kind for kind in words.KINDS if kind.name in BODY]
 # limit: ratio of what is said of one ball's diameter or mass [-]; weighed again, rounded
 _ONE_BALL = 1.02
-_VARIED = ("temperature_K", "angle_deg")
+_VARIED = ("temperature_K", "angle_deg", words.REBOUND_ANGLE)
 
 
 @dataclass(frozen=True)
@@ -166,7 +175,7 @@ def _above(sheet: SheetRows, body: dict[str, set[Measured]]) -> dict[str, str]:
     """Add the ball's size and mass in lines above the headers; return what these lines became."""
     used = {}
     for k, row in enumerate(sheet.rows[: sheet.top], start=1):
-        line, start, said = " ".join(filter(None, row)), 0, []
+        line, start, said = " ".join(dict.fromkeys(filter(None, row))), 0, []
         for found in _SIZE.finditer(line):
             text, spoken = bare(line[start : found.start()]), bare(line[: found.start()])
             if not words.has(words.BALL, spoken):  # a 10 mm steel ball
@@ -195,6 +204,9 @@ def _take(row: Sequence[str], k: int, sheet: SheetRows, so_far: _SoFar) -> None:
         so_far.body.setdefault(name, set()).update(found.pop(name, []))
     last = {name: found[name][0] for name in APPROACHES if name in found} or so_far.last
     so_far.last = last
+    if any(column.kind.name == words.REBOUND_ANGLE for column in sheet.columns):
+        last, alone = along_normal(found, last)
+        left += [f"row {k}: {alone}"] * bool(alone)
     if why := _no_trial(found, unread, last):
         left.append(f"row {k}: {why}")
         return
@@ -220,12 +232,15 @@ def _lines(
 ) -> list[str]:  # fmt: skip
     """What is told of several rows, or of all."""
     above, across = (", ".join(rows) for rows in (found.from_above, found.across))
-    normal = {c.kind.name for c in columns if c.taken} >= {"angle_deg", "impact_speed_m_s"}
+    known = {c.kind.name for c in columns if c.taken}
+    normal = known >= {"angle_deg", "impact_speed_m_s"}
+    whole = words.REBOUND_ANGLE in known
     unknown = any(became.startswith(NOT_UNDERSTOOD) for _, became in told)
     lines = [
         (above, f"row {above}: the approach is that of the row above"),
         (across, f"row {across}: restitution with v^2 = 2 g h, g = {GRAVITY} m/s^2"),
-        (normal, "speeds beside angles are taken as those along the normal"),
+        (normal and not whole, "speeds beside angles are taken as those along the normal"),
+        (whole, "speeds beside angles of approach and rebound are taken as those along the path"),
         (unknown, f"what a column may be named, with its unit: {UNDERSTOOD}"),
         *((True, f"{n}: standard deviations of the means, from their readings") for n in scattered),
     ]

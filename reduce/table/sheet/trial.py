@@ -27,6 +27,35 @@ def mean_of(readings: Sequence[Measured]) -> Measured:
     return Measured(sum(v.value for v in readings) / n, math.hypot(*(v.std for v in readings)) / n)
 
 
+def along_normal(found: Readings, last: dict[str, Measured]) -> tuple[dict[str, Measured], str]:
+    """Return the approach along the normal where a row has its speeds along the path, and a remark.
+
+    Rebounds become their parts along the normal and along the flat, forwards against x.
+    """
+    angle, back = found.get("angle_deg", []), found.pop(words.REBOUND_ANGLE, [])
+    if not angle:
+        return last, ""
+    if speed := last.get("impact_speed_m_s"):
+        last = {**last, "impact_speed_m_s": _part(speed, mean_of(angle))}
+    if "impact_speed_m_s" in found:
+        found["impact_speed_m_s"] = [last["impact_speed_m_s"]]
+    if not (up := found.pop(words.REBOUND_SPEED, [])):
+        return last, ""
+    if not back:
+        return last, "rebound speed left out, it has no angle"
+    speed, angle_back = mean_of(up), mean_of(back)
+    found[words.REBOUND_SPEED] = [_part(speed, angle_back)]
+    beside = Measured(90.0 - angle_back.value, angle_back.std)
+    found.setdefault("tangential_rebound_m_s", [_part(speed, beside).scaled(-1.0)])
+    return last, ""
+
+
+def _part(speed: Measured, angle: Measured) -> Measured:
+    """The part of a speed across a line, from the angle to it [deg]."""
+    a, std = math.radians(angle.value), math.radians(angle.std)
+    return speed.times(Measured(math.sin(a), abs(math.cos(a)) * std)).rounded()
+
+
 def restitutions_of(
     found: Readings, last: Mapping[str, Measured]
 ) -> tuple[list[Measured], str, bool, str]:
@@ -122,6 +151,7 @@ def became(
     usual = {
         words.REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
         words.REBOUND_SPEED: "restitution, over the speed of approach",
+        words.REBOUND_ANGLE: "parts of the rebound speed",
         **dict.fromkeys(("trial", "person", "ball"), "in the notes of the trials"),
     }  # fmt: skip
     told = usual.get(name, name)

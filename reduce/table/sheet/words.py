@@ -74,6 +74,7 @@ _MOST = r"peak|max|massim|maks|spitze|crete|pico|picco|szczyt|stoss|impact|最�
 _FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
 _SWING = r"auslenk|ausschlag|deflec|swing|pend[eou]l|lacher|release|oscil|wychyl|wahad|摆|振"
 """Of the angle to which a pendulum is drawn."""
+_ANGLE = r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)"
 _SPIN = r"\bspin\b|\bgiro\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
 
 MEANS = (
@@ -106,6 +107,7 @@ ROD = r"\b(rod|stab|stange|barre|tige|barra|asta|varilla|haste|pret)\b|棒"
 """Of a striker that is no ball."""
 
 REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
+REBOUND_ANGLE = "rebound_angle"
 BODY = BALL_DIAMETER, BALL_MASS = "ball_diameter", "ball_mass"
 APPROACHES = ("drop_height_m", "impact_speed_m_s", LOAD)
 DENTS = ("dent_diameter_m", "permanent_depth_m", "scar_width_m", "scar_length_m")
@@ -178,7 +180,9 @@ KINDS = (
         (r"^((impact )?spot|(mess|treff|aufschlag)stelle|point d impact|punto d[i e]* ?impacto?|"
          r"ponto de impacto)( ?(no|nr|n))?\.?$",)),
     SheetKind("temperature_K", "temperature", (r"temperatur|\btemp\b|温度|室温",), r"^t$"),
-    SheetKind("angle_deg", "angle", (r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)",),
+    SheetKind(REBOUND_ANGLE, "angle", (_ANGLE, _AFTER),
+        never=f"{_SWING}|contact|kontakt|tilt|neigung"),
+    SheetKind("angle_deg", "angle", (_ANGLE,),
         never=f"{REBOUND}|{_SWING}|contact|kontakt|tilt|neigung"),
     SheetKind("restitution", "number",
         ("restitu[tczi]|restytuc|stoss?zahl|stossziffer|恢复系数|反発係数|はね返り係数",),

@@ -134,6 +134,18 @@ def test_a_preload_makes_the_zero_as_unsure_as_what_it_hides(tmp_path):
     assert abs(unsure.value - 2e-6) < 2.0 * unsure.std
 
 
+def test_a_load_cell_that_was_not_tared_is(tmp_path):
+    """Its 30 N are seen in the air; a preload that is held there has no air before it."""
+    rows = record()
+    found = reduced(tmp_path / "a.csv", text(rows), machine_compliance_m_N=0.0)
+    off = np.array([[0.0], [0.0], [30.0]])
+    tared = reduced(tmp_path / "b.csv", text(rows + off), machine_compliance_m_N=0.0)
+    for name, value in found.values.items():
+        assert tared.values[name].value == pytest.approx(value.value, rel=0.01, abs=2e-7)
+    assert any("N in the air: taken off" in note for note in tared.notes)
+    assert not any("in the air" in note for note in found.notes)
+
+
 def test_what_the_header_says_of_the_machine_is_taken_off_or_doubted(tmp_path):
     head = "Machine Comp: {} nm/N\nTip: ball\ntime_s,depth_um,load_N\n"
     fits = reduced(tmp_path / "a.csv", text(record(machine=2e-9), head=head.format(2)))

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
@@ -9,6 +10,7 @@ from dentscope.reduce.scan.crater import reduce_scan
 from dentscope.reduce.scan.kind import reduce
 from dentscope.reduce.scan.options import Options
 from dentscope.studies.synthetic.scans import random_truth, render
+from scipy.spatial import Delaunay
 
 EXCERPTS = Path(__file__).resolve().parents[2] / "data" / "surface-scans"
 REAL = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "surface-scans"
@@ -121,3 +123,58 @@ def test_lines_of_an_instrument_above_a_grid_and_units_of_columns_are_read(tmp_p
     for name, given in (("grid", Options(unit="m", step_m=1e-5)), ("points", Options())):
         found = reduce(tmp_path / f"{name}.csv", given).values["permanent_depth_m"]
         assert abs(found.value - 3e-6) < 3.0 * found.std
+
+
+BESIDE = ROUGH - 1e-5 * np.maximum(0.0, 0.04 - (U - 0.4) ** 2 - (V - 0.4) ** 2)
+BESIDE -= 0.7e-5 * np.maximum(0.0, 0.04 - (U + 0.4) ** 2 - (V + 0.4) ** 2)
+
+
+def test_other_craters_are_told_and_no_roughness(tmp_path):
+    np.savetxt(tmp_path / "a.csv", BESIDE, delimiter=",")
+    found = reduce(tmp_path / "a.csv", Options(unit="m", step_m=1e-5))
+    depth = found.values["permanent_depth_m"]
+    assert abs(depth.value - 4e-7) < 4.0 * depth.std < 0.05 * depth.value
+    assert any("of 2 craters the deepest" in note for note in found.notes)
+
+
+def test_a_number_that_fills_what_was_not_seen_is_no_height(tmp_path):
+    seen = np.random.default_rng(5).random(DENT.shape) < 0.9
+    found = []
+    for name, filling in (("a", np.nan), ("b", -9999.0), ("c", 1e9)):
+        z = np.where(seen, 1e6 * DENT, filling)
+        np.savetxt(tmp_path / f"{name}.csv", z, delimiter=",")
+        given = Options(unit="m", height_unit="um", step_m=1e-5)
+        found.append(reduce(tmp_path / f"{name}.csv", given))
+    depths = [one.values["permanent_depth_m"] for one in found]
+    assert depths[0] == depths[1] == depths[2]
+    assert found[0].notes == found[1].notes == found[2].notes
+
+
+def test_a_crater_that_leaves_the_scan_has_no_volume(tmp_path):
+    np.savetxt(tmp_path / "a.csv", BESIDE[:, :150], delimiter=",")
+    found = reduce(tmp_path / "a.csv", Options(unit="m", step_m=1e-5))
+    assert np.isnan(found.values["crater_volume_m3"].value)
+    assert any("within the scan" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("form", ["stl", "ply", "xyz"])
+def test_points_of_a_mesh_or_a_cloud_are_read(tmp_path, form):
+    rng = np.random.default_rng(2)
+    at = rng.uniform(-1.0, 1.0, (9000, 2)) if form == "xyz" else np.c_[U.ravel(), V.ravel()][::3]
+    z = -0.03 * np.maximum(0.0, 0.3 - (at**2).sum(axis=1)) + rng.normal(0.0, 1e-5, len(at))
+    points, path = np.c_[at, z], tmp_path / f"a.{form}"
+    if form == "xyz":
+        np.savetxt(path, points, fmt="%.7f")
+    else:
+        meshio.Mesh(points, [("triangle", Delaunay(at).simplices)]).write(path)
+    depth = reduce(path, Options(unit="mm")).values["permanent_depth_m"]
+    assert depth.value == pytest.approx(9e-6, rel=0.01)
+    assert abs(depth.value - 9e-6) < 4.0 * depth.std
+
+
+def test_a_curve_is_no_cloud_of_points(tmp_path, errs):
+    t = np.linspace(0.0, 1.0, 2000)
+    np.savetxt(tmp_path / "a.csv", np.c_[t, t**2, np.sin(t)], delimiter=",")
+    assert "cover no area" in errs("reduce", "scan", tmp_path / "a.csv", "--unit", "mm")
+    (tmp_path / "a.stl").write_bytes(b"solid")
+    assert "a whole STL or PLY file" in errs("reduce", "scan", tmp_path / "a.stl")

@@ -13,10 +13,12 @@ from dentscope.reduce.bounces.fall import Fall
 from dentscope.reduce.bounces.options import BounceOptions
 from dentscope.reduce.bounces.times import reduce_bounce_times
 from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.sound.file import read_sound
 from dentscope.studies.synthetic.sounds import RATE, SoundTruth, bounces, record, write_wav
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.io import wavfile
 
 REAL = Path(__file__).parents[4] / "shared" / "recordings" / "ball-bounce-acoustic"
 measured = pytest.mark.skipif(not REAL.exists(), reason="the recordings are not here")
@@ -115,6 +117,23 @@ def test_restitution_of_rendered_bounces(tmp_path, seed):
         assert e.value == pytest.approx(near[2], rel=5e-3)
     reduced.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize("form", ["wav", "flac"])
+def test_a_microphone_with_one_channel_turned_hears(tmp_path, form):
+    samples = record(SoundTruth())
+    turned = (np.stack([samples, -samples], axis=1) * 32767).astype("<i2")
+    wavfile.write(tmp_path / "a.wav", RATE, turned)
+    path = tmp_path / f"a.{form}"
+    if form == "flac":
+        av = pytest.importorskip("av")
+        with av.open(str(path), "w") as out:
+            stream = out.add_stream("flac", rate=RATE, layout="stereo")
+            frame = av.AudioFrame.from_ndarray(turned.reshape(1, -1), "s16", "stereo")
+            frame.sample_rate = RATE
+            for packet in [*stream.encode(frame), *stream.encode(None)]:
+                out.mux(packet)
+    assert np.ptp(read_sound(path).samples) == pytest.approx(np.ptp(samples), rel=0.01)
 
 
 def test_a_wave_file_without_its_header_is_refused_in_a_line(tmp_path):

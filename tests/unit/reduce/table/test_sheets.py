@@ -319,6 +319,9 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
     )
     assert restitutions(sheet) == [0.655]
     assert columns(sheet)["Stdabw. e"] == "left out: sums up its neighbours"
+    head = "drop height (cm),crater depth (um),depth error (um)"  # of the depth beside it
+    (trial,) = read_text(tmp_path, f"{head}\n10,30,2\n").trials
+    assert trial.observables["permanent_depth_m"].std == pytest.approx(2e-6)
 
 
 @pytest.mark.parametrize(
@@ -362,6 +365,8 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("drop height;rebound height (mm)\n10;5\n20;9\n",
          r"drop height: the header names no unit .*allowed: m, cm"),
         ("a;b\n10;5\n20;9\n", "no row of headers is understood"),
+        ("trial,impact energy (J),dent diameter (mm)\n1,1,0.9\n",
+         r"one of 'impact energy \(J\)'; --column 'HEADER"),
         ("C (GPa),hm\n10,5\n20,9\n", "no row of headers is understood"),
         ("Fallhöhe (cm);Abdruck (mm)\n10;5\n", "dent diameter\\? --column 'Abdruck=dent diameter'"),
         ("Hauteur;Rebond\n100;10\n", "rebound height\\? --column 'Rebond=rebound height UNIT'"),
@@ -385,6 +390,16 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
 def test_a_sheet_that_would_be_misread_is_refused(tmp_path, text, said):
     with pytest.raises(InputError, match=said):
         read_text(tmp_path, text)
+
+
+def test_speeds_beside_both_angles_are_those_along_the_path(tmp_path):
+    head = "impact velocity (m/s),impact angle (deg),rebound velocity (m/s),rebound angle (deg)"
+    sheet = read_text(tmp_path, f"{head}\n10,30,6,25\n,60,6,50\n10,60,6,\n10,,6,\n")
+    assert each(sheet, "impact_speed_m_s") == pytest.approx([5.0, 75.0**0.5, 10.0])
+    assert restitutions(sheet) == pytest.approx([0.507142, 0.530727, 0.6], rel=1e-5)
+    assert value(sheet, 0, "tangential_rebound_m_s") == pytest.approx(-5.437847)
+    assert any("along the path" in line for line in sheet.left_out)
+    assert "row 4: rebound speed left out, it has no angle" in sheet.left_out
 
 
 def test_an_angle_that_is_not_read_makes_no_normal_impact(tmp_path):
@@ -459,11 +474,12 @@ def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
 
 def test_errors_of_a_spreadsheet_are_told(tmp_path):
     rows = [[], ["drop height (cm)", "rebound height (cm)"]]
-    rows += [[30, height] for height in (20, 21, "#DIV/0!", 22)]
+    rows += [[30, height] for height in (20, 21, "#DIV/0!", 22, "=B3+1")]
     path = workbook(tmp_path / "a.xlsx", rows, title="a & b")
     found = read_sheet(path)
     assert len(found.trials) == 3
     assert any("row 5" in line and "'#DIV/0!'" in line for line in found.left_out)
+    assert any("row 7" in line and "without a stored" in line for line in found.left_out)
     assert read_columns(path).cells[2][1] == "#DIV/0!"
 
 
@@ -548,6 +564,13 @@ def test_a_ball_above_the_headers_is_that_of_the_set(tmp_path, above, between):
         {"tip_radius_m": 5.25e-3, "mass_kg": 4.08e-3}
     )
     assert any("ball mass 4" in became and "striker's" in became for _, became in sheet.columns)
+
+
+def test_a_ball_in_merged_cells_above_is_told_once(tmp_path):
+    rows = [["Steel ball 10 mm, 4.08 g"], ["drop height (cm)", "e", "dent (mm)"], [10, 0.6, 0.5]]
+    sheet = read_sheet(workbook(tmp_path / "a.xlsx", rows, merged=["A1:C1"]))
+    told = "row 1: ball diameter 10 mm, ball mass 4.08 g, the striker's"
+    assert columns(sheet)["Steel ball 10 mm, 4.08 g"] == told
 
 
 def test_formulas_in_notes_are_text_in_the_set_and_come_back(tmp_path):
