@@ -170,7 +170,8 @@ def _no_table(
             return InputError("no table of a name", source=source, key=key, allowed=f"[{key}.NAME]")
     key = ".".join(map(str, location))
     header = f"[{key}]" if isinstance(location[-1], str) else f"[[{location[-2]}]]"
-    return InputError(_shown(given), source=source, key=key, allowed=f"a table, {header}")
+    shown = "missing" if given is None else _shown(given)
+    return InputError(shown, source=source, key=key, allowed=f"a table, {header}")
 
 
 def _shown(value: Any) -> str:

@@ -42,7 +42,7 @@ class Levelled:
     step: Array
     terms: Array
     outliers: int
-    others: int
+    others: int = 0
 
     @property
     def leaves(self) -> bool:

@@ -212,7 +212,7 @@ def test_a_floor_is_fitted_over_three_quarters_and_a_half_of_the_half_width(monk
 def test_levelling_leaves_nine_tenths_of_the_radius_around_a_crater_out() -> None:
     x, y = np.mgrid[:101, :101] - 50
     crater = np.hypot(x, y) <= 10.0
-    clear = _outside(crater, SimpleNamespace(z=np.zeros((101, 101)), source=""))
+    clear = _outside((crater,), SimpleNamespace(z=np.zeros((101, 101)), source=""))
     assert not clear[50, 50 + 10 + 9]
     assert clear[50, 50 + 10 + 10]
 
@@ -225,7 +225,7 @@ def test_a_twentieth_of_the_points_is_left_to_level_on(left, few) -> None:
     seen[-5:] = 1.0
     seen[-1, -1] = 1.0 if left == 500 else 0.0
     scan = SimpleNamespace(z=np.where(seen, 0.0, np.nan), source="")
-    assert refused(lambda: _outside(crater, scan)) == few
+    assert refused(lambda: _outside((crater,), scan)) == few
 
 
 def test_a_wall_is_followed_from_45_to_8_hundredths_of_the_depth() -> None:
