@@ -20,6 +20,7 @@ from ...core.observables import OBSERVABLES
 from ...dynamics.files.second import second_of
 from ...recordings.checks.press import LOAD_CLASS
 from ..choice.odds import Odds
+from ..comparison.conditions import Condition
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
@@ -151,7 +152,8 @@ class _Plan:
             "angle_deg": math.degrees(c.condition.incidence), "mass_kg": striker["mass_kg"],
             "tip_radius_m": striker["tip_radius_m"], "repeats": float(self.repeats),
         }  # fmt: skip
-        text = f"{c.change}, measuring {', '.join(OBSERVABLES[n].label for n in self.measured)}"
+        reads = ", ".join(OBSERVABLES[n].label for n in self.measured)
+        text = f"{c.change}{_fall(c.condition, self.rig.of['gravity_m_s2'])}, measuring {reads}"
         kind = "build" if c.built else "trial"
         return Proposal(text, 0.0, kind, trial=trial, minutes=minutes)
 
@@ -163,6 +165,13 @@ class _Plan:
             cells=self.problem.cells.and_new(self.cells),
         )  # fmt: skip
         return wide.with_error(self.problem.error)
+
+
+def _fall(one: Condition, gravity: float) -> str:
+    """The height of an upright blow, for who sets heights."""
+    if not one.around.from_height or one.incidence < 0.5 * math.pi - 1e-6:
+        return ""
+    return f" (a fall of {1e3 * one.speed**2 / (2.0 * gravity):.3g} mm)"
 
 
 def _options(simulator: Simulator) -> _Plan:

@@ -7,7 +7,6 @@ import math
 from ...core.observables import OBSERVABLES
 from ...core.tables import counted
 from ..choice.odds import OUTSIDE
-from ..comparison.problem import Problem
 from ..experiments.session import Proposal, Session, Telling
 from ..findings import Verdict
 from ..rules import RULES
@@ -29,7 +28,7 @@ def next_lines(v: Verdict) -> list[str]:
     if not s.steps and not v.proposals:
         return []
     told = f"remove {_of_doubt(s.information, s)}"
-    steps = [f"{k}. {_step(step, v.problem)}" for k, step in enumerate(s.steps, start=1)]
+    steps = [f"{k}. {_step(step)}" for k, step in enumerate(s.steps, start=1)]
     meaning = [_meaning(v, one) for one in s.outcomes]
     if s.goes_on:
         head = f"In one session ({_time(s.minutes)} of {_time(s.length)}), which is expected to "
@@ -56,16 +55,10 @@ def _time(minutes: float) -> str:
     return f"{minutes:.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.2g} h"
 
 
-def _step(p: Proposal, problem: Problem) -> str:
+def _step(p: Proposal) -> str:
     often = int(p.trial.get("repeats", 1))
     times = f"{often} times: " if often > 1 else ""
-    change = p.change
-    blows = [c for c in problem.conditions if c.press is None]
-    upright = p.kind == "trial" and float(p.trial["angle_deg"]) > 90.0 - 1e-4
-    if upright and all(c.around.from_height for c in blows):  # of who sets heights
-        height = float(p.trial["speed_m_s"]) ** 2 / (2.0 * problem.rig.of["gravity_m_s2"])
-        change = change.replace(" m/s", f" m/s (a fall of {quantity(height, 'm')})", 1)
-    text = f"strike {times}{change}" if p.kind == "trial" else change
+    text = f"strike {times}{p.change}" if p.kind == "trial" else p.change
     return f"{text[0].upper()}{text[1:]} ({_time(p.minutes)})."
 
 

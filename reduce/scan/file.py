@@ -253,14 +253,12 @@ def _mesh(path: Path) -> _Raw:
     with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         warnings.simplefilter("ignore")
         try:
-            points = np.asarray(meshio.read(path).points, dtype=np.float64)
+            x, y, z = np.asarray(meshio.read(path).points, dtype=np.float64).T
         except (Exception, SystemExit):  # its readers raise what they like, and say little
             raise InputError(
                 "cannot be read as a mesh", source=str(path), allowed="a whole STL or PLY file"
             ) from None
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise InputError("no points in it", source=str(path), allowed="a whole STL or PLY file")
-    return _regular(np.unique(points, axis=0), path)
+    return _regular(np.unique(np.stack([x, y, z], axis=1), axis=0), path)
 
 
 def _factor(unit: str | None, path: Path) -> float:

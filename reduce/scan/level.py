@@ -134,11 +134,10 @@ def _craters_of(smooth: Array, clear: Mask, scan: Scan) -> list[Mask]:
 
 
 def _outside(craters: Sequence[Mask], scan: Scan) -> Mask:
-    outside = np.isfinite(scan.z)
-    for crater in craters:
-        radius = math.sqrt(float(crater.sum()) / math.pi)
-        away = ndimage.distance_transform_edt(~crater)
-        outside &= away > (RULES.clearance - 1.0) * max(radius, 2.0)
+    """Points seen that lie clear of the craters, by the radius of the widest."""
+    radius = math.sqrt(max(float(crater.sum()) for crater in craters) / math.pi)
+    away = ndimage.distance_transform_edt(~np.any(craters, axis=0))
+    outside = np.asarray((away > (RULES.clearance - 1.0) * max(radius, 2.0)) & np.isfinite(scan.z))
     if outside.sum() < RULES.level_points * outside.size:
         raise InputError(
             "the crater leaves no undisturbed surface to level on", source=scan.source,

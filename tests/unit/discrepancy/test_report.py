@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.families import Family
-from dentscope.discrepancy.experiments.session import Proposal, Telling
+from dentscope.discrepancy.experiments.session import Telling
 from dentscope.discrepancy.findings import After, WrongInput
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
-from dentscope.discrepancy.report.next_session import _meaning, _step, change_lines
+from dentscope.discrepancy.report.next_session import _meaning, change_lines
 from dentscope.discrepancy.report.sentences import headline, nowhere, own_parameters, why
 from dentscope.discrepancy.report.series import (
     STATED,
@@ -194,19 +194,6 @@ def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     v.probabilities = {"baseline": 0.998, "work-hardening": 0.002}
     told = why(v)
     assert "Most probable: nothing is missing (more than 99 %). Nothing else has a share." in told
-
-
-@pytest.mark.parametrize(("heights", "angle"), [(True, 90.0), (True, 45.0), (False, 90.0)])
-def test_who_drops_is_told_the_height(heights: bool, angle: float) -> None:
-    """And not where it slants: a rod's speed is along the normal, a ball's along its path."""
-    blow = SimpleNamespace(press=None, around=SimpleNamespace(from_height=heights))
-    rig = SimpleNamespace(of={"gravity_m_s2": 9.81})
-    problem: Any = SimpleNamespace(conditions=(blow,), rig=rig)
-    trial: dict[str, str | float] = {"speed_m_s": 2.0, "angle_deg": angle, "repeats": 3.0}
-    one = Proposal("ball at 2 m/s, measuring dent", 0.0, "trial", trial=trial, minutes=15.0)
-    fall = " (a fall of 204 mm)" if heights and angle == 90.0 else ""
-    told = f"Strike 3 times: ball at 2 m/s{fall}, measuring dent (15 min)."
-    assert _step(one, problem) == told
 
 
 def test_a_strength_that_is_not_stated_is_told_as_assumed() -> None:

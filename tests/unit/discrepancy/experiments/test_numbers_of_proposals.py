@@ -15,6 +15,7 @@ from dentscope.discrepancy.experiments import feasible
 from dentscope.discrepancy.experiments.feasible import candidates_of, presses_of
 from dentscope.discrepancy.experiments.foreseen import _samples, _spread_out
 from dentscope.discrepancy.experiments.next_experiment import (
+    _fall,
     _noise,
     _press_noise,
     _sharper,
@@ -48,6 +49,15 @@ def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
     found = candidates_of(replace(given, conditions=lean))
     seen = [round(math.degrees(c.condition.angle), 6) for c in found]
     assert sorted(set(seen) - {40.0, 80.0}) == [45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0]
+
+
+@pytest.mark.parametrize(("heights", "angle"), [(True, 90.0), (True, 45.0), (False, 90.0)])
+def test_who_drops_is_told_the_height(toy, heights, angle) -> None:
+    """And not where it slants: a rod's speed is along the normal, a ball's along its path."""
+    one = toy.condition(2.0, angle=math.radians(angle))
+    one = replace(one, around=replace(one.around, from_height=heights))
+    fall = " (a fall of 204 mm)" if heights and angle == 90.0 else ""
+    assert _fall(one, 9.81) == fall
 
 
 @pytest.fixture
