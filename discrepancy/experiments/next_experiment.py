@@ -153,7 +153,7 @@ class _Plan:
             "tip_radius_m": striker["tip_radius_m"], "repeats": float(self.repeats),
         }  # fmt: skip
         reads = ", ".join(OBSERVABLES[n].label for n in self.measured)
-        text = f"{c.change}{_fall(c.condition, self.rig.of['gravity_m_s2'])}, measuring {reads}"
+        text = f"{c.change}{_fall(c.condition, self.rig.of)}, measuring {reads}"
         kind = "build" if c.built else "trial"
         return Proposal(text, 0.0, kind, trial=trial, minutes=minutes)
 
@@ -167,11 +167,11 @@ class _Plan:
         return wide.with_error(self.problem.error)
 
 
-def _fall(one: Condition, gravity: float) -> str:
+def _fall(one: Condition, stated: Mapping[str, float]) -> str:
     """The height of an upright blow, for who sets heights."""
     if not one.around.from_height or one.incidence < 0.5 * math.pi - 1e-6:
         return ""
-    return f" (a fall of {1e3 * one.speed**2 / (2.0 * gravity):.3g} mm)"
+    return f" (a fall of {1e3 * one.speed**2 / (2.0 * stated['gravity_m_s2']):.3g} mm)"
 
 
 def _options(simulator: Simulator) -> _Plan:

@@ -57,7 +57,7 @@ def test_who_drops_is_told_the_height(toy, heights, angle) -> None:
     one = toy.condition(2.0, angle=math.radians(angle))
     one = replace(one, around=replace(one.around, from_height=heights))
     fall = " (a fall of 204 mm)" if heights and angle == 90.0 else ""
-    assert _fall(one, 9.81) == fall
+    assert _fall(one, {"gravity_m_s2": 9.81}) == fall
 
 
 @pytest.fixture
