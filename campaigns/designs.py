@@ -99,7 +99,9 @@ DESIGNS: dict[str, Design] = {
 def design_named(name: str) -> Design:
     """Return a design, or refuse a name with those that are known."""
     if name not in DESIGNS:
-        raise InputError(f"{name!r}", key="design", allowed=", ".join(DESIGNS))
+        raise InputError(
+            f"{name!r}", key="design", allowed=f"a folder of CASE.toml files, {', '.join(DESIGNS)}"
+        )
     return DESIGNS[name]
 
 

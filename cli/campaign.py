@@ -16,7 +16,7 @@ from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.output import in_use
 from ..core.processes.stopping import STOPS, stopped
 from . import campaign_data, studies
-from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
+from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out, design_of
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .shared.groups import group
 from .shared.places import misused, one_of, refuse_beside
@@ -35,6 +35,7 @@ def designs() -> None:
 
     for design in DESIGNS.values():
         typer.echo(f"{design.name:12} {design.about}")
+    typer.echo(f"{'FOLDER':12} pairs of your own: a CASE.toml each, as of `dentscope case --new`")
 
 
 @app.command()
@@ -56,14 +57,14 @@ def run(
     ] = 0.0,
 ) -> int:
     """Compute what the sweep lacks; stop it at any time and run it again to go on."""
-    from ..campaigns import Store, design_named, distinct_cases, run_design, status_of
+    from ..campaigns import Store, distinct_cases, run_design, status_of
     from ..campaigns.executor import DaskExecutor, LocalExecutor
     from ..campaigns.run import cases_to_do
 
     if scheduler:
         refuse_beside(context, "beside --scheduler: it has the workers", "workers")
     share = _share(part)
-    chosen = design_named(design)
+    chosen = design_of(design)
     store = Store(out)
     again = frozenset({one_of(retry, ("", "failed"), key="--retry")} - {""})
     before = status_of(chosen, store)
@@ -140,11 +141,11 @@ def status(
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
     """Count done, failed and missing cases, own and published; works while the sweep runs."""
-    from ..campaigns import DESIGNS, Store, design_named, published_designs, status_of
+    from ..campaigns import DESIGNS, Store, published_designs, status_of
 
     store = Store(out)
     stored = store.summaries()
-    chosen = [design_named(design)] if design else list(DESIGNS.values())
+    chosen = [design_of(design)] if design else list(DESIGNS.values())
     counts = {one.name: status_of(one, store) for one in chosen}
     begun = {k: c for k, c in counts.items() if design or c.done or c.failed}
     named = begun or {DEFAULT_DESIGN: counts[DEFAULT_DESIGN]}
@@ -163,7 +164,7 @@ def status(
         typer.echo(f"Own run, {out}:")
     else:
         typer.echo(f"No run of your own in {out}: `dentscope campaign run` starts one.")
-    for name, c in named.items() if stored or design else ():
+    for name, c in begun.items():
         typer.echo("  ".join([f"design {name}", *(f"{k} {n}" for k, n in _counts(c).items())]))
     for summary in stored:
         typer.echo(f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}")

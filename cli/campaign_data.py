@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +23,27 @@ DEFAULT_DESIGN = "full"
 """Sweep of a command that names none."""
 
 Out = Annotated[Path, folder_option("Folder of the run.")]
-DesignName = Annotated[str, typer.Option(help="Which sweep; see `campaign designs`.")]
+DesignName = Annotated[
+    str, typer.Option(help="Which sweep, or a folder of CASE.toml files; see `campaign designs`.")
+]
+
+
+def design_of(name: str) -> Any:
+    """Return a design, or that of the CASE.toml files of a folder; refuse what is neither."""
+    from ..campaigns import DESIGNS, Case, Design, design_named
+    from ..start.case_file import read_case
+
+    folder = Path(name)
+    if name in DESIGNS or not folder.is_dir():
+        return design_named(name)
+    cases = []
+    for file in sorted(folder.glob("*.toml")):
+        problem, accuracy = read_case(file)
+        # fields are what one pair is looked at for, by `dentscope case`
+        cases.append(Case(file.stem, replace(problem, snapshots=()), accuracy))
+    if not cases:
+        raise misused(f"no CASE.toml in {name}", key="--design", allowed="one for each pair")
+    return Design(folder.resolve().name, "pairs of your own", lambda: tuple(cases))
 
 
 def show(
@@ -148,10 +169,9 @@ def publish(
     ),
 ) -> None:
     """Make immutable parts below 10 MB from a complete run."""
-    from ..campaigns import design_named
     from ..campaigns import publish as write_parts
 
-    for part in write_parts(design_named(design), out, to):
+    for part in write_parts(design_of(design), out, to):
         typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
 
 

@@ -15,7 +15,11 @@ from dentscope.campaigns.cases.pairs import RATIOS
 from dentscope.campaigns.cost import pace_of_this_machine
 from dentscope.campaigns.parts import opened_part, texts_of
 from dentscope.campaigns.quality import largest_step, steps_not_in
+from dentscope.cli.campaign_data import design_of
 from dentscope.cli.campaign_progress import remarks
+from dentscope.core.errors import InputError
+from dentscope.core.inputs.templates import CASE
+from dentscope.start.case_file import read_case
 from made_cases import case_of
 
 
@@ -171,6 +175,23 @@ def test_what_is_published_is_its_design(monkeypatch, part):
     with opened_part(part) as file:
         monkeypatch.setattr(fem, "NUMERICS_VERSION", int(file.attrs["numerics_version"]))
         assert set(texts_of(file, "id")) == set(distinct_cases(design_named(file.attrs["design"])))
+
+
+def test_a_folder_of_pairs_is_a_design(tmp_path):
+    given = CASE
+    for name, flat in (("soft", "3.0e8"), ("hard", "5.0e8")):
+        (tmp_path / f"{name}.toml").write_text(given.replace("Sy_Pa = 3.0e8", f"Sy_Pa = {flat}"))
+    made = design_of(str(tmp_path))
+    problem, accuracy = read_case(tmp_path / "hard.toml")
+    hard, soft = made.make()
+    assert (made.name, hard.name, soft.name) == (tmp_path.name, "hard", "soft")
+    assert (hard.pair, hard.depths, hard.accuracy) == (problem.pair, problem.depths, accuracy)
+    assert not hard.problem.snapshots
+    assert list(distinct_cases(made)) == [hard.id, soft.id]
+    assert design_of("smoke") is DESIGNS["smoke"]
+    (tmp_path / "none").mkdir()
+    with pytest.raises(InputError, match="no CASE"):
+        design_of(str(tmp_path / "none"))
 
 
 def test_the_full_design_has_more_combinations_than_the_thesis(cases):
