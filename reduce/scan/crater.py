@@ -16,7 +16,15 @@ from ..rules import RULES
 from .bottom import find_bottom
 from .file import Scan
 from .level import Levelled, filled, levelled
-from .walls import Section, opening, pile_up, section, section_covariance, without_band
+from .walls import (
+    Section,
+    opening,
+    pile_up,
+    section,
+    section_covariance,
+    without_band,
+    without_blur,
+)
 
 # limit: area within the outline of a crater at most, in that below the surface [-]; a ring around
 # a hill, as of heights that grow downwards, has 1.7
@@ -77,7 +85,7 @@ def reduce_scan(
 
     `level` is the shape of the undisturbed surface, one of `scan_level.LEVELS`; `height_scale` true
     over shown heights; `blur` the standard deviation of the lateral blur [m]: it lifts a floor of
-    Laplacian q by q blur²/2, which is taken off.
+    Laplacian q by q blur²/2, and lowers the rim, which is taken off.
     """
     shown = levelled(scan, level=level)
     direction, half_width = _shape(shown)
@@ -88,19 +96,19 @@ def reduce_scan(
     length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
     _check_whole(shown, length, width, scan.source)
     length, width = without_band(length, width, half_width)
-    depth = _without_blur(bottom.depth, bottom.laplacian, blur)
+    depth = without_blur(bottom.depth, bottom.laplacian, blur)
     if not depth.std < RULES.own_error * depth.value:
         raise Refused(
             f"a crater {1e6 * depth.value:.3g} um deep +- {1e6 * depth.std:.3g} um",
             source=scan.source, allowed="a depth that the roughness lets see, a finer scan",
         )  # fmt: skip
-    cell = float(np.prod(scan.step))
+    rim, cell = pile_up(shown, half_width, blur), float(np.prod(scan.step))
     volume = Measured(
         math.nan if shown.leaves else -float(np.sum(filled(shown.z)[shown.crater])) * cell,
         bottom.depth.std * float(shown.crater.sum()) * cell,
     )
     return Crater(
-        depth=depth.times(height_scale), pile_up=pile_up(shown, half_width).times(height_scale),
+        depth=depth.times(height_scale), pile_up=rim.times(height_scale),
         length=length, width=width, sliding=length.minus(width),
         volume=volume.times(height_scale), deepest=bottom.place, direction=direction,
         surface=shown, along=along, across=across,
@@ -130,11 +138,6 @@ def _shape(found: Levelled) -> tuple[float, float]:
     area = len(cells) * float(np.prod(found.step))
     ratio = math.sqrt(values[1] / max(values[0], 1e-300))
     return math.atan2(vectors[1, 1], vectors[0, 1]), math.sqrt(area / (math.pi * ratio))
-
-
-def _without_blur(depth: Measured, laplacian: float, blur: Measured) -> Measured:
-    lift = 0.5 * laplacian * blur.value**2
-    return Measured(depth.value + lift, math.hypot(depth.std, laplacian * blur.value * blur.std))
 
 
 def _notes(scan: Scan, found: Levelled, width: Measured, scale: Measured) -> tuple[str, ...]:

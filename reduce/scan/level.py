@@ -16,7 +16,7 @@ from scipy import ndimage
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ..rules import RULES
-from ..shared.regression import robust_regression, robust_std
+from ..shared.regression import MAD_TO_STD, robust_regression, robust_std
 from .file import Scan
 
 # limit: depth and area of another crater at least, in those of the deepest [-]; less is roughness
@@ -91,8 +91,15 @@ def filled(z: Array) -> Array:
 
 
 def _without_spikes(z: Array) -> tuple[Array, int]:
-    off = z - ndimage.median_filter(filled(z), size=5, mode="nearest")
+    """Heights without points far from those around, by the roughness and by how these differ."""
+    whole = filled(z)
+    off = z - ndimage.median_filter(whole, size=5, mode="nearest")
     spike = np.abs(off) > RULES.foreign * max(robust_std(off[np.isfinite(off)]), 1e-15)
+    # the points of a narrow rim are as far off as a spike, but those around them differ as much
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(whole, 2, mode="edge"), (5, 5))
+    around = windows[spike].reshape(-1, 25)
+    away = np.abs(around - np.median(around, axis=1, keepdims=True))
+    spike[spike] = np.abs(off[spike]) > RULES.foreign * MAD_TO_STD * np.median(away, axis=1)
     return np.where(spike, np.nan, z), int(spike.sum())
 
 

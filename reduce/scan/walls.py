@@ -113,24 +113,39 @@ def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Meas
     return Measured(middle + end * scale, math.hypot(std, RULES.wall_end * step))
 
 
-def pile_up(found: Levelled, half_width: float) -> Measured:
-    """Return the largest mean height along lines of equal distance from the crater's edge."""
+def without_blur(height: Measured, curvature: float, blur: Measured) -> Measured:
+    """Return a depth, or a height, without what a lateral blur took off where it bends so."""
+    lift = 0.5 * curvature * blur.value**2
+    return Measured(height.value + lift, math.hypot(height.std, curvature * blur.value * blur.std))
+
+
+def pile_up(found: Levelled, half_width: float, blur: Measured) -> Measured:
+    """Return the largest mean height along lines of equal distance from the crater's edge.
+
+    Between rings it is the parabola's whose means over three of them are theirs, and its bend says
+    what the blur took off.
+    """
     away = ndimage.distance_transform_edt(~found.crater, sampling=found.step)
-    width = max(0.06 * half_width, float(found.step.max()))
-    middle = np.argwhere(found.crater).mean(0)[:, None, None]
-    angle = np.arctan2(*(np.indices(found.crater.shape) - middle))
-    sector = (
-        ((angle + np.pi) / (2.0 * np.pi) * RULES.sectors).astype(int).clip(0, RULES.sectors - 1)
-    )
-    best = Measured(0.0, 0.0)
-    for number in range(int(1.2 * half_width / width)):
-        ring = (away > number * width) & (away <= (number + 1) * width) & np.isfinite(found.z)
-        if ring.sum() < 2 * RULES.sectors:
-            continue
-        sums = np.bincount(sector[ring], found.z[ring], minlength=RULES.sectors)
-        counts = np.bincount(sector[ring], minlength=RULES.sectors)
-        means = sums[counts > 0] / counts[counts > 0]
-        mean = float(found.z[ring].mean())
-        if (mean > best.value or number == 0) and len(means) > 1:
-            best = Measured(mean, float(np.std(means, ddof=1)) / math.sqrt(len(means)))
-    return best
+    width = max(0.04 * half_width, float(found.step.max()))
+    near = (away > 0.0) & (away <= 1.2 * half_width) & np.isfinite(found.z)
+    ring, z = np.ceil(away[near] / width).astype(int), found.z[near]
+    counts = np.bincount(ring)
+    means = np.bincount(ring, z) / np.maximum(counts, 1)
+    means[counts < 2 * RULES.sectors] = -np.inf
+    k = int(np.argmax(means))
+    if not means[k] > 0.0:
+        return Measured(0.0, 0.0)
+    top, bend, beside = means[k], 0.0, means[[max(k - 1, 0), min(k + 1, len(means) - 1)]]
+    if np.all((beside < top) & np.isfinite(beside)):
+        bend = 2.0 * top - beside.sum()
+        top += np.diff(beside)[0] ** 2 / (8.0 * bend) + bend / 24.0
+    middle = np.argwhere(found.crater).mean(0)[:, None]
+    turn = np.arctan2(*(np.argwhere(near)[ring == k].T - middle)) / (2.0 * np.pi) + 0.5
+    sector = (turn * RULES.sectors).astype(int).clip(0, RULES.sectors - 1)
+    counts = np.bincount(sector)
+    around = np.bincount(sector, z[ring == k])[counts > 0] / counts[counts > 0]
+    # the edge is known to whole points, which blurs the rim by step²/12, more or less
+    pixels = float(bend * np.prod(found.step)) / (24.0 * width**2)
+    noise = float(np.std(around, ddof=1)) / math.sqrt(len(around))
+    read = Measured(float(top) + pixels, math.hypot(noise, pixels))
+    return without_blur(read, float(bend) / width**2, blur)

@@ -16,7 +16,7 @@ FIT_ROUNDS = 20
 # root of the last digit of a double, twice
 _UNSEEN = 3e-8
 
-_MAD_TO_STD = 1.4826
+MAD_TO_STD = 1.4826
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def robust_std(values: Array, *, lost: int = 0) -> float:
     if n == 0:
         return 0.0
     deviation = float(np.median(np.abs(values - np.median(values))))
-    return _MAD_TO_STD * deviation * float(np.sqrt(n / max(n - lost, 1)))
+    return MAD_TO_STD * deviation * float(np.sqrt(n / max(n - lost, 1)))
 
 
 def _tiny(observed: Array) -> float:

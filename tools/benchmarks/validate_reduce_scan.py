@@ -1,7 +1,8 @@
 """Prove the reduction of scans on rendered ones.
 
-`python tools/benchmarks/validate_reduce_scan.py 200` prints error and coverage of depth, and of the
-sliding length of scars, over scans with drawn size, rim, tilt, roughness, noise, spikes and holes.
+`python tools/benchmarks/validate_reduce_scan.py 200` prints error and coverage of depth, width and
+rim, and of the sliding length of scars, over scans with drawn size, rim, tilt, roughness, noise,
+spikes and holes.
 """
 
 import sys
@@ -28,6 +29,7 @@ def main(count: int) -> None:
             ("depth", found.depth, truth.depth),
             ("width", found.width, 2.0 * truth.radius),
             ("length", found.length, 2.0 * truth.radius),
+            ("pile-up", found.pile_up, truth.pile_up),
         ]
         scar = random_truth(seed, sliding=4e-4)
         slid = reduce_scan(render(scar), blur=_stated_blur(scar))
