@@ -17,6 +17,15 @@ from ...core.arrays import Array
 from ..rules import RULES
 from ..shared.regression import robust_regression, robust_std
 
+# limit: part of an interval by which bounces of one ball stray from a course [-]
+_UNEVEN = 0.01
+
+# limit: flights beyond the coefficients of their course at least [-]
+_FREE = 4
+
+# limit: coefficients of a course at most [-]
+_TERMS = 6
+
 # limit: instants that runs are looked for among [-]: their pairs' work
 _INSTANTS_TRIED = 80
 
@@ -28,20 +37,21 @@ class Chain:
     """Instants of one run: `times` (n,) [s], and the indices of those that belong to it, (k,).
 
     `single` says whether the gap after each but the last is one flight that can be used (not two
-    with a missed contact between, nor one that strays); `factor` is the typical ratio of an
-    interval to the one before; `notes` tell what was left out.
+    with a missed contact between, nor one that strays), `missed` whether it is two; `factor` is the
+    typical ratio of an interval to the one before; `notes` tell what was left out.
     """
 
     times: Array
     kept: tuple[int, ...]
     single: tuple[bool, ...]
+    missed: tuple[bool, ...]
     factor: float
     notes: tuple[str, ...]
 
     @property
     def free(self) -> int:
         """Flights beyond those that a smooth course takes."""
-        return sum(self.single) - _terms(self.single)
+        return sum(self.single) - self._course[1]
 
     def scatter(self) -> float:
         """Return the standard deviation of an instant by the roughness of the intervals [s].
@@ -51,10 +61,12 @@ class Chain:
         """
         if self.free < 1:
             return math.nan
-        rest = _rests(self.times, self.kept, self.single)[np.array(self.single)]
-        if self.free < 4:  # half of three rests may be none by luck
-            return math.sqrt(float(rest @ rest) / self.free / 2.0)
-        return robust_std(rest, lost=3) / math.sqrt(2.0)
+        rest = self._course[0][np.array(self.single)]
+        return math.sqrt(float(rest @ rest) / self.free / 2.0)
+
+    @property
+    def _course(self) -> tuple[Array, int]:
+        return _course(self.times, self.kept, self.single, self.missed)
 
     def by_luck(self, count: int) -> float:
         """Return how many such runs are expected by chance among as many instants.
@@ -81,26 +93,30 @@ class Chain:
         return bool(change > RULES.by_chance * error)
 
 
-def _terms(single: Sequence[bool]) -> int:
-    """How many coefficients a smooth course has, for so many flights."""
-    return 3 if sum(single) >= 6 else 2
+def _course(
+    times: Array, kept: Sequence[int], single: Sequence[bool], missed: Sequence[bool]
+) -> tuple[Array, int]:
+    """Intervals less their smooth course, (k - 1,) [s], and its number of coefficients.
 
-
-def _rests(times: Array, kept: Sequence[int], single: Sequence[bool]) -> Array:
-    """Intervals less their smooth course, (k - 1,) [s]; zeros for fewer than three flights.
-
-    The logarithms of the intervals follow a parabola in the number of the bounce; of fewer than six
-    flights a line, for one restitution.
+    The logarithms of the intervals follow a polynomial in the number of the bounce, of the degree
+    that generalised cross-validation has it, for restitution and drag follow the speed: of fewer
+    than five flights a line, one restitution. Zeros for fewer than three.
     """
     gaps = np.diff(times[list(kept)])
     use = np.array(single)
-    if use.sum() < 3:
-        return np.zeros_like(gaps)
-    number = np.arange(gaps.size) + np.cumsum(~use) - 0.5 * gaps.size
-    design = np.vander(number, _terms(single))
+    n = int(use.sum())
+    if n < 3:
+        return np.zeros_like(gaps), 2
+    number = np.arange(gaps.size) + np.cumsum(missed) - 0.5 * gaps.size
     weight = gaps[use] / gaps[use].max()  # an error in seconds weighs less in a long interval
-    fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
-    return np.asarray(gaps - np.exp(design @ fit.coefficients))
+    found = []
+    for terms in range(2, min(max(n - _FREE, 3), max(n - 2, 2), _TERMS) + 1):
+        design = np.vander(number / gaps.size, terms)
+        fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
+        rest = np.asarray(gaps - np.exp(design @ fit.coefficients))
+        found.append((float(np.linalg.norm(rest[use])) / (n - terms), terms, rest))
+    _, terms, rest = min(found, key=lambda f: f[0])
+    return rest, terms
 
 
 def chain_of(times: Array) -> Chain | None:
@@ -127,16 +143,18 @@ def chain_of(times: Array) -> Chain | None:
     outside = times.size - len(kept) - extra
     if outside:
         notes.append(f"{outside} instants before or after the run are left out")
-    missed = len(single) - sum(single)
-    if missed:
-        notes.append(f"{missed} bounces were not recorded; those next to them are left out")
+    missed = tuple(not one for one in single)
+    if any(missed):
+        notes.append(f"{sum(missed)} bounces were not recorded; those next to them are left out")
     single, stray = _without_strays(used, kept, single)
     if stray:
         notes.append(f"{stray} intervals stray from the course of the others and are left out")
+    gaps = dict(zip(kept, missed, strict=False))
     kept, single, ends = _without_false_ends(used, kept, single)
     if ends:
         notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
-    run = Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
+    missed = tuple(gaps[k] for k in kept[:-1])
+    run = Chain(np.asarray(times), kept, single, missed, _typical(used, found), tuple(notes))
     # taps, steps: among as many instants some hang together
     return None if run.by_luck(used.size) > 0.5 else run
 
@@ -160,12 +178,15 @@ def _without_strays(
     times: Array, kept: tuple[int, ...], single: tuple[bool, ...]
 ) -> tuple[tuple[bool, ...], int]:
     """Give up flights that a knock in place of a bounce has shortened or lengthened."""
-    if _terms(single) < 3:
+    rest, terms = _course(times, kept, single, [not one for one in single])
+    if sum(single) < 6:
         return single, 0
-    rest = _rests(times, kept, single)
     rounding = 1e-9 * float(np.ptp(times[list(kept)]))  # of instants without any scatter
-    limit = max(RULES.stray * robust_std(rest[np.array(single)], lost=3), rounding)
-    kept_ones = tuple(bool(s and abs(r) <= limit) for s, r in zip(single, rest, strict=True))
+    limit = np.maximum(
+        max(RULES.stray * robust_std(rest[np.array(single)], lost=terms), rounding),
+        _UNEVEN * np.diff(times[list(kept)]),
+    )
+    kept_ones = tuple(map(bool, np.array(single) & (np.abs(rest) <= limit)))
     return kept_ones, sum(single) - sum(kept_ones)
 
 

@@ -106,6 +106,7 @@ def reduce_bounce_times(
     if options.contact_time_s == 0.0:
         notes.append("a contact counts as flight, the errors hold that: contact_time_s = 0")
         bounces = tuple(_unsure_contact(b, options.gravity_m_s2) for b in bounces)
+    notes += _asked_back(bounces, options)
     gained = [b for b in bounces if b.restitution.value > 1.0 + 3.0 * b.restitution.std]
     if gained:
         raise InputError(
@@ -152,6 +153,20 @@ def _bounces(
                 _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
             )
     return tuple(found)
+
+
+def _asked_back(bounces: Sequence[BouncedTimes], options: BounceOptions) -> list[str]:
+    """Ask back a height from which the first bounce is unlike the second, which needs none."""
+    if bounces[0].number > 1 or len(bounces) < 2:
+        return []
+    first, second = (b.restitution.value for b in bounces[:2])
+    if abs(math.log(first / second)) < RULES.sudden:
+        return []
+    fits = 0.5 * (bounces[0].rebound.value / second) ** 2 / options.gravity_m_s2
+    return [
+        f"the first bounce gives {first:.3g} of the speed back, the next {second:.3g}: is "
+        f"release_height_m {options.release_height_m:g}? {fits:.2g} would fit"
+    ]
 
 
 def _unsure_contact(bounce: BouncedTimes, gravity: float) -> BouncedTimes:

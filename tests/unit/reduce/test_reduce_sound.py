@@ -14,7 +14,14 @@ from dentscope.reduce.bounces.options import BounceOptions
 from dentscope.reduce.bounces.times import reduce_bounce_times
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.sound.file import read_sound
-from dentscope.studies.synthetic.sounds import RATE, SoundTruth, bounces, record, write_wav
+from dentscope.studies.synthetic.sounds import (
+    RATE,
+    SoundTruth,
+    bounces,
+    random_bounces,
+    record,
+    write_wav,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -117,6 +124,41 @@ def test_restitution_of_rendered_bounces(tmp_path, seed):
         assert e.value == pytest.approx(near[2], rel=5e-3)
     reduced.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize("seed", [3, 4, 9])
+def test_a_restitution_that_follows_the_speed_is_no_error_of_the_instants(seed):
+    """Drag and e(v) bend the course of the intervals; each e itself scatters by 0.2 %."""
+    truth = random_bounces(seed)
+    times, _, e = np.transpose(bounces(truth))
+    known = BounceOptions(
+        mass_kg=truth.mass, contact_time_s=truth.contact_time, diameter_m=truth.diameter
+    )
+    found = reduce_bounce_times(times, known, std=None, source="made")
+    assert len(found.bounces) == len(times) - 2
+    for bounce in found.bounces:
+        assert bounce.restitution.std < 0.02 * bounce.restitution.value
+        off = bounce.restitution.value - e[bounce.number - 1]
+        assert abs(off) < 3.0 * bounce.restitution.std + 1e-4
+
+
+def test_an_interval_that_strays_is_no_missed_bounce():
+    instants = np.append(0.0, np.cumsum(0.5 * 0.75 ** np.arange(9)))
+    instants[4] += 0.006
+    chain = chain_of(instants)
+    assert not any(chain.missed)
+    assert chain.single == (True,) * 3 + (False,) * 2 + (True,) * 4
+    assert chain.scatter() < 1e-9
+
+
+@pytest.mark.parametrize(("height", "asked"), [(0.5, False), (0.55, False), (5.0, True)])
+def test_a_height_is_asked_back_that_makes_the_first_bounce_unlike_the_next(height, asked):
+    flights = 2.0 * np.sqrt(2.0 * 0.5 / 9.81) * 0.75 ** np.arange(1, 7)
+    times = np.append(0.3, 0.3 + np.cumsum(flights))
+    found = reduce_bounce_times(
+        times, BounceOptions(release_height_m=height), std=None, source="made"
+    )
+    assert any("5? 0.5 would fit" in note for note in found.notes) == asked
 
 
 @pytest.mark.parametrize("form", ["wav", "flac"])
