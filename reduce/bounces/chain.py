@@ -20,7 +20,7 @@ from ..shared.regression import robust_regression, robust_std
 # limit: part of an interval by which bounces of one ball stray from a course [-]
 _UNEVEN = 0.01
 
-# limit: flights beyond the coefficients of their course at least [-]
+# limit: flights beyond the coefficients of a course above a parabola at least [-]
 _FREE = 4
 
 # limit: coefficients of a course at most [-]
