@@ -23,6 +23,10 @@ _UNEVEN = 0.01
 # limit: flights beyond the coefficients of a course above a parabola at least [-]
 _FREE = 4
 
+# limit: part of a course's cross-validated error that one more bend has to leave at most [-]; of
+# six flights that scatter one in fifty does
+_WON = 0.25
+
 # limit: coefficients of a course at most [-]
 _TERMS = 6
 
@@ -62,7 +66,9 @@ class Chain:
         if self.free < 1:
             return math.nan
         rest = self._course[0][np.array(self.single)]
-        return math.sqrt(float(rest @ rest) / self.free / 2.0)
+        if self.free < 4:  # half of three rests may be none by luck
+            return math.sqrt(float(rest @ rest) / self.free / 2.0)
+        return robust_std(rest, lost=self._course[1]) / math.sqrt(2.0)
 
     @property
     def _course(self) -> tuple[Array, int]:
@@ -98,9 +104,10 @@ def _course(
 ) -> tuple[Array, int]:
     """Intervals less their smooth course, (k - 1,) [s], and its number of coefficients.
 
-    The logarithms of the intervals follow a polynomial in the number of the bounce, of the degree
-    that generalised cross-validation has it, for restitution and drag follow the speed: of fewer
-    than five flights a line, one restitution. Zeros for fewer than three.
+    The logarithms of the intervals follow a parabola in the number of the bounce; of fewer than six
+    flights a line, for one restitution. Drag and a restitution that follows the speed bend them
+    more: a higher degree counts where generalised cross-validation wins much by it, for a ball's
+    bounces scatter, too. Zeros for fewer than three flights.
     """
     gaps = np.diff(times[list(kept)])
     use = np.array(single)
@@ -109,14 +116,15 @@ def _course(
         return np.zeros_like(gaps), 2
     number = np.arange(gaps.size) + np.cumsum(missed) - 0.5 * gaps.size
     weight = gaps[use] / gaps[use].max()  # an error in seconds weighs less in a long interval
-    found = []
-    for terms in range(2, min(max(n - _FREE, 3), max(n - 2, 2), _TERMS) + 1):
+    best, course = math.inf, (np.zeros_like(gaps), 2)
+    for terms in range(3 if n >= 6 else 2, min(max(n - _FREE, 3), max(n - 2, 2), _TERMS) + 1):
         design = np.vander(number / gaps.size, terms)
         fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
         rest = np.asarray(gaps - np.exp(design @ fit.coefficients))
-        found.append((float(np.linalg.norm(rest[use])) / (n - terms), terms, rest))
-    _, terms, rest = min(found, key=lambda f: f[0])
-    return rest, terms
+        score = float(np.linalg.norm(rest[use])) / (n - terms)
+        if score < _WON * best:
+            best, course = score, (rest, terms)
+    return course
 
 
 def chain_of(times: Array) -> Chain | None:

@@ -75,7 +75,7 @@ EXACT = {
     "reduce/mocap/motion.py": "SHARED OWN",
     "reduce/press/curve.py": "_STIFFNESS_FROM _STIFFNESS_TO",
     "reduce/press/cycles.py": "_HELD",
-    "reduce/shared/regression.py": "_MAD_TO_STD",
+    "reduce/shared/regression.py": "MAD_TO_STD",
     "reduce/scan/level.py": "LEVELS",
     "reduce/scan/picture.py": "UM",
     "reduce/table/cells.py": "OUT_OF_RANGE DAY",
