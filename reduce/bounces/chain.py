@@ -27,9 +27,6 @@ _FREE = 4
 # six flights that scatter one in fifty does
 _WON = 0.25
 
-# limit: coefficients of a course at most [-]
-_TERMS = 6
-
 # limit: instants that runs are looked for among [-]: their pairs' work
 _INSTANTS_TRIED = 80
 
@@ -117,7 +114,7 @@ def _course(
     number = np.arange(gaps.size) + np.cumsum(missed) - 0.5 * gaps.size
     weight = gaps[use] / gaps[use].max()  # an error in seconds weighs less in a long interval
     best, course = math.inf, (np.zeros_like(gaps), 2)
-    for terms in range(3 if n >= 6 else 2, min(max(n - _FREE, 3), max(n - 2, 2), _TERMS) + 1):
+    for terms in range(3 if n >= 6 else 2, min(max(n - _FREE, 3), max(n - 2, 2)) + 1):
         design = np.vander(number / gaps.size, terms)
         fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
         rest = np.asarray(gaps - np.exp(design @ fit.coefficients))
