@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import os
+import platform
 import re
+import shutil
 import stat
 import tempfile
 from contextlib import suppress
@@ -21,6 +23,10 @@ _STAGES = ("core", "fem", "models", "dynamics", "discrepancy", "studies")
 # limit: names that are tried for a folder of one's own [-]: more are an attack
 _MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
+SHIPPED = "compiled"
+"""Folder of the package with compiled code that came with it: SHIPPED/DIGEST/ as the sources."""
+SHIPPED_FOR = {"NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": "+avx2,+fma"}
+"""What it is compiled for, as numba is told: processors since 2013."""
 _COMPILES = re.compile(r"numba|njit|_kernel\b|@kernel\b")
 _RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
@@ -68,13 +74,44 @@ def _add_with_imports(path: Path, files: set[Path]) -> None:
 def keep_compiled_code() -> None:
     """Point numba at this source's folder, unless the user chose one.
 
-    To be called before numba is imported; afterwards it has no effect. Settings of numba that lie
-    in the current folder have none either.
+    What came compiled with the package is put there where this machine can run it. To be called
+    before numba is imported; afterwards it has no effect. Settings of numba that lie in the current
+    folder have none either.
     """
     if not os.environ.get(_VARIABLE):
-        digest = source_digest(Path(__file__).resolve().parents[1])
-        os.environ[_VARIABLE] = str(cache_folder(f"compiled-{digest}"))
+        root = Path(os.path.abspath(__file__)).parents[1]  # links are not followed: numba's way
+        digest = source_digest(root)
+        folder = cache_folder(f"compiled-{digest}")
+        os.environ[_VARIABLE] = str(folder)
+        shipped = root / SHIPPED / digest
+        if shipped.is_dir() and "NUMBA_CPU_NAME" not in os.environ and runs_shipped():
+            os.environ.update(SHIPPED_FOR)
+            _take(shipped, root, folder)
     compile_without_the_folders_settings()
+
+
+def runs_shipped() -> bool:
+    """Whether this machine can run what is compiled for `SHIPPED_FOR`."""
+    if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
+        return False
+    with suppress(OSError):
+        return {"avx2", "fma", "bmi2"} <= set(Path("/proc/cpuinfo").read_text().split())
+    return False
+
+
+def _take(shipped: Path, root: Path, folder: Path) -> None:
+    for part in {path.parent for path in shipped.rglob("*.nbi")}:
+        place = folder / name_by_numba(root / part.relative_to(shipped))
+        if not place.exists():
+            with suppress(OSError), tempfile.TemporaryDirectory(dir=folder) as made:
+                for file in part.glob("*.nb?"):
+                    shutil.copyfile(file, Path(made) / file.name)
+                Path(made).rename(place)  # whole at once: another process may do the same
+
+
+def name_by_numba(source: Path) -> str:
+    """Return what numba calls its folder for the code of the modules in a folder."""
+    return f"{source.name}_{hashlib.sha1(str(source).encode()).hexdigest()}"
 
 
 def cache_folder(name: str) -> Path:

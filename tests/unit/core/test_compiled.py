@@ -77,19 +77,33 @@ ball, flat = Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3, Sy=1e9)
 print(float(sum(STRONGE.residual(Pair(ball, flat, 0.01), 3e-4))))
 """
 
-    def residual():
+    def residual(cache="cache", **extra):
         # as a user's: no other cache, sources as they are
-        env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
-        env |= {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+        env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"} | extra
+        env |= {"XDG_CACHE_HOME": str(tmp_path / cache), "PYTHONPATH": str(tmp_path)}
         return float(python("-c", code, env=env, cwd=tmp_path, check=True).stdout)
 
-    before = residual()
+    before = residual(**compiled.SHIPPED_FOR if compiled.runs_shipped() else {})
+    # the same code, shipped with the sources, is taken as it is by a user who has none
+    (kept,) = (tmp_path / "cache" / "dentscope").iterdir()
+    for part in ("models", "models/published"):
+        made = kept / compiled.name_by_numba(copy / part)
+        shutil.copytree(made, copy / compiled.SHIPPED / source_digest(copy) / part)
+    assert residual("new-home") == before
+    if compiled.runs_shipped():
+        (taken,) = (tmp_path / "new-home" / "dentscope").iterdir()
+        assert contents(taken) == contents(kept)
     law = copy / "models" / "published" / "ceb.py"
     text = law.read_text()
     radius = "math.sqrt(par[R] * (2.0"
     assert text.count(radius) == 1
     law.write_text(text.replace(radius, "math.sqrt(1.2 * par[R] * (2.0"))
     assert abs(residual() / before - 1.0) > 1e-3
+
+
+def contents(folder):
+    """Every file below a folder by its place, as bytes: an index tells what was compiled anew."""
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
 def test_numba_is_pointed_there_and_a_choice_of_the_user_is_kept(tmp_path):
