@@ -194,8 +194,6 @@ def change(m, w, event):
         w.scale[at.SPRING] = w.scale[at.SLIP] if receding else w.scales[at.SPRING_FORCE]
     if event == at.TURN:
         now[at.APPROACHING] = 0.0
-        if math.isnan(tally[at.FIRST_TURN]):
-            tally[at.FIRST_TURN] = z[at.TIME]
         if now[at.PHASE] == at.LOAD:
             _peak(m, w)
         first, branch = 0.1 * w.scales[at.T_REF], w.branch
