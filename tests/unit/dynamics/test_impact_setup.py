@@ -289,7 +289,8 @@ def test_where_the_tip_sticks_and_what_is_objected() -> None:
     assert steepest == pytest.approx(0.77, abs=0.01)
     for row in rows:
         assert row.inferred.objections
-        assert row.inferred.return_duration < row.inferred.duration
+        flight = row.measured.depth / (row.measured.restitution * row.measured.speed)
+        assert row.inferred.return_duration == pytest.approx(row.inferred.duration + flight)
 
 
 def test_friction_that_sticks_is_a_mistake() -> None:
