@@ -130,7 +130,9 @@ def _made_again(name: str, values: dict[str, Any], given: set[str]) -> InputTabl
 
 
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
-    "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),
+    "support-compliance": (
+        "impact.support", lambda file: file.impact.support in ("sprung", "plate", "rod"),
+    ),
     "half-space-waves": (
         "impact.support", lambda file: file.impact.support in ("plate", "half-space", "rod"),
     ),
@@ -139,7 +141,7 @@ _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "truncated-tip": ("impact.finite_tip", lambda file: file.impact.finite_tip),
     "work-hardening": ("flow_curve or hardening", lambda file: bool(curves_in(file))),
 }  # fmt: skip
-"""What else of a set-up says the same."""
+"""What else of a set-up says how the same thing moves."""
 
 
 def asked_of(file: SetupFile) -> dict[str, MechanismTable]:
@@ -185,7 +187,7 @@ def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
     for name, (other, given) in _ALONE.items():
         if name in tables and given(file):
             yield InputError(
-                f"given beside {other}, which says the same", source=source,
+                f"given beside {other}, which says it already", source=source,
                 key=f"mechanisms.{name}", allowed="one of the two",
             )  # fmt: skip
     if {"rod-longitudinal-waves", "rod-flexural-vibration"} <= tables.keys():
