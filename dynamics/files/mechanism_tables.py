@@ -204,7 +204,8 @@ def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
     asked = asked_in(file)
     for m in asked.mechanisms:
         size = m.parameters[0]
-        if asked.constants[m.name][size.name] == size.neutral:
+        sized = size.name in m.stated(asked.around)  # by the rig: 0 is told of as idle
+        if asked.constants[m.name][size.name] == size.neutral and not sized:
             stated = getattr(tables[m.name], size.name) is not None
             beside = f"; or {' and '.join(m.reads)}" if m.reads and not stated else ""
             yield InputError(
