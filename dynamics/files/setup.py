@@ -174,10 +174,11 @@ class Setup:
         if not self.asked and self.second is None:
             return found
         plain = self.plain(law)
-        if self.second is not None:
-            spin = self._own_spin(plain, found.rebound_spin_rad_s)
-            found = replace(found, rebound_spin_rad_s=float(spin))
-        return self.acting(plain).read(plain, found)
+        found = self.acting(plain).read(plain, found)
+        if self.second is None:
+            return found
+        spin = self._own_spin(plain, found.rebound_spin_rad_s)
+        return replace(found, rebound_spin_rad_s=float(spin))
 
     def _own_spin(self, plain: Scene, spin: Any) -> Any:
         """The striking sphere's own spin; of one on a flat it is what was simulated."""

@@ -12,6 +12,7 @@ from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..result import Impact
 from ..scene import Scene
+from ..stepping.layout import OBSERVABLES as NUMBERS
 from .base import Constants, Mechanism, Situation, Surroundings, attached, observed
 
 SIMULATED = {
@@ -77,10 +78,7 @@ class Asked:
             SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
         }
         if changed.get("peak_depth_m", found.peak_depth_m) == 0.0:
-            # a film has stopped it: there was no blow
-            kept = ("kinetic_before_J", "gravity_work_J")
-            changed |= dict.fromkeys((k for k in found.observables if k not in kept), 0.0)
-            changed |= {"contacts": 0, "spot": plain.spot}
+            changed |= {**unstruck(plain), "contacts": 0, "spot": plain.spot}
         return replace(found, **changed)
 
 
@@ -90,4 +88,17 @@ NONE_ASKED = Asked()
 def _head(scene: Scene) -> float:
     """Square of the speed that a fall gives: a rod's along the flat is not the fall's."""
     along = 0.0 if scene.striker.length > 0.0 else scene.approach.tangential
+def unstruck(plain: Scene) -> dict[str, float]:
+    """Return the observables of a striker that a film has stopped: there was no blow.
+
+    Nothing has acted along the flat.
+    """
+    kept, a, striker = ("kinetic_before_J", "gravity_work_J"), plain.approach, plain.striker
+    return {
+        **dict.fromkeys((name for name in NUMBERS if name not in kept), 0.0),
+        "tangential_rebound_m_s": a.tangential, "rebound_spin_rad_s": a.spin,
+        "kinetic_after_J": 0.5 * (striker.mass * a.tangential**2 + striker.inertia * a.spin**2),
+    }  # fmt: skip
+
+
     return scene.approach.speed**2 + along**2
