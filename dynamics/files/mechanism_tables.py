@@ -154,25 +154,24 @@ def read_by(file: SetupFile) -> frozenset[str]:
     return frozenset(k for table in asked_of(file).values() for k in table.mechanism.reads)
 
 
-def asked_in(file: SetupFile) -> Asked:
-    """Return the mechanisms that a set-up asks for; a number that is left out is its source's."""
+def asked_in(file: SetupFile, *, swept: bool = False) -> Asked:
+    """Return the mechanisms that a set-up asks for; a number that is left out is its source's.
+
+    In its blow, or as the blows of its sweep arrive.
+    """
     tables = asked_of(file)
     if not tables:
         return NONE_ASKED
+    height, heights = file.impact.drop_height_m, file.sweep.drop_height_m
+    falls = bool(heights) or (height is not None and not file.sweep.impact_speed_m_s)
     around = surroundings_of(
         file, file.striker, temperature=value_of(file.impact.temperature_K),
-        from_height=_falls(file), height_share=1.0,
+        from_height=falls if swept else height is not None, height_share=1.0,
     )  # fmt: skip
     mechanisms = tuple(table.mechanism for table in tables.values())
     constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
-    return Asked(mechanisms, constants, around)
-
-
-def _falls(file: SetupFile) -> bool:
-    """Whether speeds follow from heights of fall."""
-    if file.sweep.impact_speed_m_s:
-        return False
-    return file.impact.drop_height_m is not None or bool(file.sweep.drop_height_m)
+    highest = max(value_of(height, 0.0), *heights, 0.0)
+    return Asked(mechanisms, constants, around, 2.0 * file.gravity_m_s2.value * highest)
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:

@@ -27,12 +27,14 @@ class Asked:
     """Mechanisms with their numbers; without any, an impact is the baseline's.
 
     `mechanisms`, `constants`: in the order of the library, and all their parameters; `around`: what
-    they may know of the rig besides the scene.
+    they may know of the rig besides the scene; `highest`: square of the speed that the largest
+    height of the file gives [m^2/s^2].
     """
 
     mechanisms: tuple[Mechanism, ...] = ()
     constants: Constants = field(default_factory=dict)
     around: Surroundings = field(default_factory=Surroundings)
+    highest: float = 0.0
 
     def __bool__(self) -> bool:
         return bool(self.mechanisms)
@@ -42,8 +44,9 @@ class Asked:
         if not self.around.from_height:
             return [(scene, self.around) for scene in plain]
         fallen = [_head(scene) for scene in plain]
+        most = max(self.highest, *fallen)
         return [
-            (scene, replace(self.around, height_share=one / max(fallen)))
+            (scene, replace(self.around, height_share=one / most))
             for scene, one in zip(plain, fallen, strict=True)
         ]
 
@@ -85,9 +88,6 @@ class Asked:
 NONE_ASKED = Asked()
 
 
-def _head(scene: Scene) -> float:
-    """Square of the speed that a fall gives: a rod's along the flat is not the fall's."""
-    along = 0.0 if scene.striker.length > 0.0 else scene.approach.tangential
 def unstruck(plain: Scene) -> dict[str, float]:
     """Return the observables of a striker that a film has stopped: there was no blow.
 
@@ -101,4 +101,7 @@ def unstruck(plain: Scene) -> dict[str, float]:
     }  # fmt: skip
 
 
+def _head(scene: Scene) -> float:
+    """Square of the speed that a fall gives: a rod's along the flat is not the fall's."""
+    along = 0.0 if scene.striker.length > 0.0 else scene.approach.tangential
     return scene.approach.speed**2 + along**2
