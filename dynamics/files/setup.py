@@ -266,9 +266,7 @@ class Setup:
         """
         asked, found = self.asked, list[dict[str, str]]()
         for plain in (self.plain(law) for law in laws):
-            others = [
-                plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS
-            ]
+            others = [plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS]
             swept = swept_scenes(self.sweep, plain, stated=self.stated)
             ways = asked.idle(others), self.asked_of_sweep.idle(swept)
             here = asked.idle([plain])
@@ -298,8 +296,8 @@ class Setup:
             return Impacts({**each, **first.joined(*others).columns})
         plain = self.plain(law)
         given = combinations(self.sweep, plain, stated=self.stated)
-        found = impacts(plain, **given, settings=self.settings, asked=self.asked_of_sweep,
-                        change=change)  # fmt: skip
+        asked = self.asked_of_sweep
+        found = impacts(plain, **given, settings=self.settings, asked=asked, change=change)
         if self.second is None:
             return found
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]

@@ -179,7 +179,7 @@ def _regrip(m, w, event):
 @njit(cache=True, **PLAIN)
 def change(m, w, event):
     """Do what the event says: another phase, another stretch, another way of sliding."""
-    now, tally, z = w.now, w.tally, w.z
+    now, z = w.now, w.z
     compliant = m.body[at.COMPLIANCE] < math.inf
     note_interval(m, w)
     if event <= at.RETURNED:

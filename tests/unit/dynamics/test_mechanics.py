@@ -82,14 +82,15 @@ def test_a_film_that_stops_a_ball_leaves_what_goes_along_the_flat(other):
     made = setup(
         target=GLASS | other, radius=3e-3, speed=0.05, environment={"viscosity_Pa_s": 0.1},
         mechanisms={"squeeze-film": True}, friction={"coefficient": 0.2},
-        impact={"angle_deg": 45.0, "approach_spin_rad_s": 100.0}, sweep={"impact_speed_m_s": [0.05]},
+        impact={"angle_deg": 45.0, "approach_spin_rad_s": 100.0},
+        sweep={"impact_speed_m_s": [0.05]},
     )  # fmt: skip
     law = LAWS["hertz"]
     found, swept = blow_of(made, [law])["hertz"], made.swept(law)
     assert (found.contacts, swept["contacts"][0]) == (0, 0)
     for name, right in (
-        ("rebound_spin_rad_s", 100.0), ("tangential_rebound_m_s", -0.05), ("rebound_speed_m_s", 0.0),
-        ("kinetic_restitution", 0.0), ("plastic_work_J", 0.0),
+        ("rebound_spin_rad_s", 100.0), ("tangential_rebound_m_s", -0.05),
+        ("rebound_speed_m_s", 0.0), ("kinetic_restitution", 0.0), ("plastic_work_J", 0.0),
     ):  # fmt: skip
         assert getattr(found, name) == pytest.approx(right, abs=1e-12)
         assert swept[name][0] == pytest.approx(right, abs=1e-12)
