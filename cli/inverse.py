@@ -67,7 +67,8 @@ def inverse(
 
 def _cell(row: Any, name: str, scale: float, form: str) -> str:
     """A number, and what the standard deviations of the rod make of it."""
-    shown, std = form.format(scale * getattr(row.inferred, name)), row.std.get(name, 0.0)
+    value, std = scale * getattr(row.inferred, name), row.std.get(name, 0.0)
+    shown = form.format(value) if value == value else "none"
     return f"{shown} ± {scale * std:.2g}" if std > 0.0 else shown
 
 

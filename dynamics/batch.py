@@ -22,7 +22,7 @@ from ..models.base import ContactLaw
 from ..models.turned import as_made, turned
 from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_batch, strike_rows
-from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
+from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked, unstruck
 from .result import leave_resting
 from .scene import Approach, ForceTransform, Friction, Scene
 from .stepping import layout as c
@@ -152,6 +152,9 @@ def _with_mechanisms(
     seen = {column: values[name] for column, name in SIMULATED.items()}
     for column, read in acting.observed(plain, seen).items():
         values[SIMULATED[column]] = np.asarray(read)
+    for row in np.flatnonzero(values["peak_depth_m"] == 0.0):
+        for name, number in {**unstruck(plain[row]), "contacts": 0.0}.items():
+            values[name][row] = number
     return _named(scene, given, values, np.full(len(plain), BY_STEPS))
 
 

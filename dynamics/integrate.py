@@ -185,7 +185,9 @@ def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) 
     """
     a = arrays_of(scene, settings)
     first, _ = _struck(scene, a)
-    span = first.touching_time_s if first.contacts == 1 else first.loading_time_s
+    span = first.touching_time_s / max(first.contacts, 1)
+    if first.contacts > 1:
+        span = min(span, first.loading_time_s)
     if span > 0.0:
         a.body[c.LONGEST] = span / max(points, 1)
         a.body[c.MAX_STEPS] += 100.0 * points

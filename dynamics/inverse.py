@@ -90,7 +90,7 @@ class Inferred:
     """Duration and mean force at both end instants, and what speaks against them.
 
     `duration` ends with the tip at depth delta_p (last separation); `return_duration` when it is
-    back at the undisturbed surface.
+    back at the undisturbed surface, at the speed with which it parted; nan where it stays.
     """
 
     alpha: float
@@ -128,9 +128,10 @@ def infer(striker: Striker, measured: MeasuredScar) -> Inferred:
     impulse = (1.0 + measured.restitution) * measured.speed / b
     slid = measured.sliding / -ratio if ratio else math.nan
     duration = (slid + measured.depth) / measured.speed
-    back = slid / measured.speed
+    left = measured.restitution * measured.speed
+    back = duration + measured.depth / left if left > 0.0 else math.nan
     # sizes and masses of 1e-300 leave nothing to divide by
-    if not (back > 0.0 and math.isfinite(duration) and 0.0 < impulse < math.inf):
+    if not (slid > 0.0 and math.isfinite(duration) and 0.0 < impulse < math.inf):
         raise InputError(
             "no duration and force can be worked out", key="inertia_kg_m2",
             allowed="an inertia near m (L^2/12 + r^2/4)",

@@ -156,7 +156,7 @@ friction_impulse_ratio = 0.13   # tangential over normal impulse
 restitution = 0.49
 permanent_depth_m = 26e-6
 sliding_length_m = 1650e-6      # path of the touching point, not a scar less its width
-# rebound_m_s = 1.07            # of the centre of mass, where it was measured
+# rebound_m_s = 1.07            # of the tip, where it was measured
 """
 """An inverse file, with its own name in it."""
 

@@ -65,7 +65,7 @@ class _TrialTable(InputTable):
     impact_speed_m_s: Annotated[float, AfterValidator(SPEEDS)]
     """Speed of the tip along the flat's normal."""
     rebound_m_s: float | None = None
-    """Speed of the centre of mass after, where it was measured."""
+    """Speed of the tip after, along the flat's normal, where it was measured."""
     friction_impulse_ratio: float = Field(ge=0.0, le=20.0)
     """Tangential over normal impulse."""
     restitution: float = Field(ge=0.0, le=2.0)

@@ -130,7 +130,9 @@ def _made_again(name: str, values: dict[str, Any], given: set[str]) -> InputTabl
 
 
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
-    "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),
+    "support-compliance": (
+        "impact.support", lambda file: file.impact.support in ("sprung", "plate", "rod"),
+    ),
     "half-space-waves": (
         "impact.support", lambda file: file.impact.support in ("plate", "half-space", "rod"),
     ),
@@ -139,7 +141,7 @@ _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "truncated-tip": ("impact.finite_tip", lambda file: file.impact.finite_tip),
     "work-hardening": ("flow_curve or hardening", lambda file: bool(curves_in(file))),
 }  # fmt: skip
-"""What else of a set-up says the same."""
+"""What else of a set-up says how the same thing moves."""
 
 
 def asked_of(file: SetupFile) -> dict[str, MechanismTable]:
@@ -152,25 +154,24 @@ def read_by(file: SetupFile) -> frozenset[str]:
     return frozenset(k for table in asked_of(file).values() for k in table.mechanism.reads)
 
 
-def asked_in(file: SetupFile) -> Asked:
-    """Return the mechanisms that a set-up asks for; a number that is left out is its source's."""
+def asked_in(file: SetupFile, *, swept: bool = False) -> Asked:
+    """Return the mechanisms that a set-up asks for; a number that is left out is its source's.
+
+    In its blow, or as the blows of its sweep arrive.
+    """
     tables = asked_of(file)
     if not tables:
         return NONE_ASKED
+    height, heights = file.impact.drop_height_m, file.sweep.drop_height_m
+    falls = bool(heights) or (height is not None and not file.sweep.impact_speed_m_s)
     around = surroundings_of(
         file, file.striker, temperature=value_of(file.impact.temperature_K),
-        from_height=_falls(file), height_share=1.0,
+        from_height=falls if swept else height is not None, height_share=1.0,
     )  # fmt: skip
     mechanisms = tuple(table.mechanism for table in tables.values())
     constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
-    return Asked(mechanisms, constants, around)
-
-
-def _falls(file: SetupFile) -> bool:
-    """Whether speeds follow from heights of fall."""
-    if file.sweep.impact_speed_m_s:
-        return False
-    return file.impact.drop_height_m is not None or bool(file.sweep.drop_height_m)
+    highest = max(value_of(height, 0.0), *heights, 0.0)
+    return Asked(mechanisms, constants, around, 2.0 * file.gravity_m_s2.value * highest)
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
@@ -185,7 +186,7 @@ def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
     for name, (other, given) in _ALONE.items():
         if name in tables and given(file):
             yield InputError(
-                f"given beside {other}, which says the same", source=source,
+                f"given beside {other}, which says it already", source=source,
                 key=f"mechanisms.{name}", allowed="one of the two",
             )  # fmt: skip
     if {"rod-longitudinal-waves", "rod-flexural-vibration"} <= tables.keys():
@@ -202,7 +203,8 @@ def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
     asked = asked_in(file)
     for m in asked.mechanisms:
         size = m.parameters[0]
-        if asked.constants[m.name][size.name] == size.neutral:
+        sized = size.name in m.stated(asked.around)  # by the rig: 0 is told of as idle
+        if asked.constants[m.name][size.name] == size.neutral and not sized:
             stated = getattr(tables[m.name], size.name) is not None
             beside = f"; or {' and '.join(m.reads)}" if m.reads and not stated else ""
             yield InputError(

@@ -174,10 +174,11 @@ class Setup:
         if not self.asked and self.second is None:
             return found
         plain = self.plain(law)
-        if self.second is not None:
-            spin = self._own_spin(plain, found.rebound_spin_rad_s)
-            found = replace(found, rebound_spin_rad_s=float(spin))
-        return self.acting(plain).read(plain, found)
+        found = self.acting(plain).read(plain, found)
+        if self.second is None:
+            return found
+        spin = self._own_spin(plain, found.rebound_spin_rad_s)
+        return replace(found, rebound_spin_rad_s=float(spin))
 
     def _own_spin(self, plain: Scene, spin: Any) -> Any:
         """The striking sphere's own spin; of one on a flat it is what was simulated."""
@@ -204,6 +205,11 @@ class Setup:
     def asked(self) -> Asked:
         """The mechanisms of the file."""
         return asked_in(self.file)
+
+    @property
+    def asked_of_sweep(self) -> Asked:
+        """The same as the blows of `[sweep]` arrive: from heights, where the blow may not."""
+        return asked_in(self.file, swept=True)
 
     @property
     def second(self) -> SecondSphere | None:
@@ -243,25 +249,29 @@ class Setup:
             )  # fmt: skip
 
     def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
-        asked = self.asked
-        if not asked:
-            return
-        reasons = []
-        for plain in (self.plain(law) for law in laws):
-            here = asked.idle(swept_scenes(self.sweep, plain, stated=self.stated))
-            if here:  # what acts at another speed is told of at this one
-                never = asked.idle([
-                    plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS
-                ])  # fmt: skip
-                here = {name: why for name, why in here.items() if name in never}
-            reasons.append(here)
-        everywhere = set.intersection(*(set(one) for one in reasons))
-        if everywhere:
+        never = self._never(laws) if self.asked else {}
+        for rig in self.rigs if never else ():  # a number of the sweep may let it act
+            never = {name: why for name, why in never.items() if name in rig._never(laws)}
+        if never:
             raise InputErrors(tuple(
-                InputError(reasons[0][name], source=self.source, key=f"mechanisms.{name}",
+                InputError(never[name], source=self.source, key=f"mechanisms.{name}",
                            allowed="left out")
-                for name in sorted(everywhere)
+                for name in sorted(never)
             ))  # fmt: skip
+
+    def _never(self, laws: Sequence[ContactLaw]) -> dict[str, str]:
+        """Return why, for the mechanisms that act by none of the laws, in no blow of this rig.
+
+        What acts at another speed is told of at this one.
+        """
+        asked, found = self.asked, list[dict[str, str]]()
+        for plain in (self.plain(law) for law in laws):
+            others = [plain.with_(approach=replace(plain.approach, speed=v)) for v in _OTHER_SPEEDS]
+            swept = swept_scenes(self.sweep, plain, stated=self.stated)
+            ways = asked.idle(others), self.asked_of_sweep.idle(swept)
+            here = asked.idle([plain])
+            found.append({k: why for k, why in here.items() if all(k in way for way in ways)})
+        return {k: why for k, why in found[0].items() if all(k in one for one in found)}
 
     @property
     def varied(self) -> dict[str, tuple[float, ...]]:
@@ -286,7 +296,8 @@ class Setup:
             return Impacts({**each, **first.joined(*others).columns})
         plain = self.plain(law)
         given = combinations(self.sweep, plain, stated=self.stated)
-        found = impacts(plain, **given, settings=self.settings, asked=self.asked, change=change)
+        asked = self.asked_of_sweep
+        found = impacts(plain, **given, settings=self.settings, asked=asked, change=change)
         if self.second is None:
             return found
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]

@@ -53,7 +53,7 @@ def _kept(values: Values, around: Surroundings) -> float:
     if not around.from_height:
         return 1.0
     growth = around.height_share ** values["loss_growth"]
-    return float(max((1.0 - values["speed_loss"]) ** growth, 0.2))
+    return float((1.0 - values["speed_loss"]) ** growth)
 
 
 class Tilt(Mechanism):

@@ -12,6 +12,7 @@ from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..result import Impact
 from ..scene import Scene
+from ..stepping.layout import OBSERVABLES as NUMBERS
 from .base import Constants, Mechanism, Situation, Surroundings, attached, observed
 
 SIMULATED = {
@@ -26,12 +27,14 @@ class Asked:
     """Mechanisms with their numbers; without any, an impact is the baseline's.
 
     `mechanisms`, `constants`: in the order of the library, and all their parameters; `around`: what
-    they may know of the rig besides the scene.
+    they may know of the rig besides the scene; `highest`: square of the speed that the largest
+    height of the file gives [m^2/s^2].
     """
 
     mechanisms: tuple[Mechanism, ...] = ()
     constants: Constants = field(default_factory=dict)
     around: Surroundings = field(default_factory=Surroundings)
+    highest: float = 0.0
 
     def __bool__(self) -> bool:
         return bool(self.mechanisms)
@@ -41,8 +44,9 @@ class Asked:
         if not self.around.from_height:
             return [(scene, self.around) for scene in plain]
         fallen = [_head(scene) for scene in plain]
+        most = max(self.highest, *fallen)
         return [
-            (scene, replace(self.around, height_share=one / max(fallen)))
+            (scene, replace(self.around, height_share=one / most))
             for scene, one in zip(plain, fallen, strict=True)
         ]
 
@@ -77,14 +81,24 @@ class Asked:
             SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
         }
         if changed.get("peak_depth_m", found.peak_depth_m) == 0.0:
-            # a film has stopped it: there was no blow
-            kept = ("kinetic_before_J", "gravity_work_J")
-            changed |= dict.fromkeys((k for k in found.observables if k not in kept), 0.0)
-            changed |= {"contacts": 0, "spot": plain.spot}
+            changed |= {**unstruck(plain), "contacts": 0, "spot": plain.spot}
         return replace(found, **changed)
 
 
 NONE_ASKED = Asked()
+
+
+def unstruck(plain: Scene) -> dict[str, float]:
+    """Return the observables of a striker that a film has stopped: there was no blow.
+
+    Nothing has acted along the flat.
+    """
+    kept, a, striker = ("kinetic_before_J", "gravity_work_J"), plain.approach, plain.striker
+    return {
+        **dict.fromkeys((name for name in NUMBERS if name not in kept), 0.0),
+        "tangential_rebound_m_s": a.tangential, "rebound_spin_rad_s": a.spin,
+        "kinetic_after_J": 0.5 * (striker.mass * a.tangential**2 + striker.inertia * a.spin**2),
+    }  # fmt: skip
 
 
 def _head(scene: Scene) -> float:

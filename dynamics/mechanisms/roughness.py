@@ -93,11 +93,16 @@ class Roughness(Mechanism):
     def stated(self, around: Surroundings) -> Values:
         """Heights that fall off exponentially with the mean sigma have Ra = 2 sigma/e."""
         Ra = around.roughness
-        return {"roughness_m": 0.5 * math.e * Ra} if Ra > 0.0 else {}
+        return {"roughness_m": 0.5 * math.e * Ra} if Ra >= 0.0 else {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
         return needs_yielding_law(situations)
+
+    def idle(self, situations: Sequence[Situation]) -> str:
+        """A stated roughness of 0 is none."""
+        smooth = situations[0][1].roughness == 0.0
+        return "the surfaces are smooth, as stated" if smooth else super().idle(situations)
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated roughness narrows the range."""

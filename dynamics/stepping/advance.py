@@ -95,6 +95,26 @@ def _go_on(w, grown):
 
 
 @njit(cache=True, **PLAIN)
+def _note_force(m, w, event):
+    """Keep the largest force and its time: at an event, or within a step where it knows the rate.
+
+    There it is the parabola with the force at both ends and the step's impulse.
+    """
+    tally, f0, f1 = w.tally, w.seen[at.FORCE], w.seen_new[at.FORCE]
+    rated = m.force[fo.DAMPING] != 0.0 or m.force[fo.RADIATION] != 0.0
+    if not (event >= 0 or rated):
+        return
+    top, place, span = f1, 1.0, w.z_new[at.TIME] - w.z[at.TIME]
+    if rated and span > 0.0:
+        mean = (w.z_new[at.P_N] - w.z[at.P_N]) / span
+        slope, bend = 6.0 * mean - 4.0 * f0 - 2.0 * f1, 3.0 * (f0 + f1 - 2.0 * mean)
+        if 0.0 < slope < -2.0 * bend:
+            top, place = f0 - 0.25 * slope * slope / bend, -0.5 * slope / bend
+    if top > tally[at.TOP_FORCE]:
+        tally[at.TOP_FORCE], tally[at.TOP_TIME] = top, w.z[at.TIME] + place * span
+
+
+@njit(cache=True, **PLAIN)
 def advance(m, w):
     """Take one step and accept what of it holds no event; return the event, NONE or AGAIN."""
     now, tally = w.now, w.tally
@@ -116,14 +136,11 @@ def advance(m, w):
     if event == AGAIN:
         return AGAIN
     now[at.AT] += now[at.TAKEN]
+    _note_force(m, w, event)
     for j in range(len(w.z)):
         w.z[j] = w.z_new[j]
     if now[at.SIDE] == 0.0:
         now[at.SIDE] = np.sign(w.seen_new[at.SLIDING])
-    # A force that depends on the rate may be largest between events.
-    rated = m.force[fo.DAMPING] != 0.0 or m.force[fo.RADIATION] != 0.0
-    if (event >= 0 or rated) and w.seen_new[at.FORCE] > tally[at.TOP_FORCE]:
-        tally[at.TOP_FORCE] = w.seen_new[at.FORCE]
     if event == NONE:
         _go_on(w, grown)
     else:

@@ -179,7 +179,7 @@ def _regrip(m, w, event):
 @njit(cache=True, **PLAIN)
 def change(m, w, event):
     """Do what the event says: another phase, another stretch, another way of sliding."""
-    now, tally, z = w.now, w.tally, w.z
+    now, z = w.now, w.z
     compliant = m.body[at.COMPLIANCE] < math.inf
     note_interval(m, w)
     if event <= at.RETURNED:
@@ -194,8 +194,6 @@ def change(m, w, event):
         w.scale[at.SPRING] = w.scale[at.SLIP] if receding else w.scales[at.SPRING_FORCE]
     if event == at.TURN:
         now[at.APPROACHING] = 0.0
-        if math.isnan(tally[at.FIRST_TURN]):
-            tally[at.FIRST_TURN] = z[at.TIME]
         if now[at.PHASE] == at.LOAD:
             _peak(m, w)
         first, branch = 0.1 * w.scales[at.T_REF], w.branch

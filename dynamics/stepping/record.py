@@ -54,7 +54,7 @@ def begin(m, w):
     fill(tally, 0.0)
     fill(w.now, 0.0)
     fill(w.branch, 0.0)
-    tally[at.FIRST_TURN], tally[at.ENDING] = np.nan, at.GOING
+    tally[at.TOP_TIME], tally[at.ENDING] = np.nan, at.GOING
     scales[at.ORIGIN] = w.surface[su.BEGIN]
     low, _ = su.height(w.surface, w.surface[su.COUNT], scales[at.ORIGIN])
     z[at.Y] = scales[at.START_Y] = -(w.surface[su.TIP_FLAT] + low)
@@ -158,7 +158,7 @@ def finish(m, w):
     out[at.O_RES_F], place = su.dent(w.surface)
     w.surface[su.BEGIN] = place
     out[at.O_TIME], out[at.O_TOUCHING] = tally[at.T_LAST], tally[at.TOUCHING]
-    out[at.O_LOADING] = tally[at.FIRST_TURN]
+    out[at.O_LOADING] = tally[at.TOP_TIME]
     out[at.O_FORCE], out[at.O_SPIN] = tally[at.TOP_FORCE], kept[at.SPIN]
     out[at.O_SLIDING] = tally[at.SLIP_HIGH] - tally[at.SLIP_LOW]
     out[at.O_TRAVEL] = tally[at.X_HIGH] - tally[at.X_LOW]

@@ -90,8 +90,8 @@ def refresh(m, w):
             w.stages[0, j] *= pace
     w.tally[at.EVALUATIONS] += 1.0
     now[at.FRESH] = 0.0
-    if now[at.PHASE] == at.LOAD:
-        w.tally[at.TOP_FORCE] = max(w.tally[at.TOP_FORCE], seen[at.FORCE])
+    if now[at.PHASE] == at.LOAD and seen[at.FORCE] > w.tally[at.TOP_FORCE]:
+        w.tally[at.TOP_FORCE], w.tally[at.TOP_TIME] = seen[at.FORCE], z[at.TIME]
     event_values(m, w, z, seen, w.values)
     # What has just crossed zero, as well as an event is met, may fall through it within the first
     # step: a hair below zero it would have no crossing there.

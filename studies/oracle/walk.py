@@ -175,7 +175,7 @@ class _Walk:
     def follow(self, z: Array, k: Contact) -> Array:
         """Go from event to event; return the state at the latest separation."""
         self.now, self.touched = 0.0, 0.0
-        self.contacts, self.touching, self.first, self.last = 1, 0.0, math.nan, 0.0
+        self.contacts, self.touching, self.topped, self.last = 1, 0.0, math.nan, 0.0
         self.p_in = self.p_out = self.w_in = self.w_out = self.p_mark = self.w_mark = 0.0
         self.force = self.depth = 0.0
         self.stuck, self.ending = False, c.DONE
@@ -186,7 +186,8 @@ class _Walk:
             if name == "budget":
                 return z
             self.extremes(z)
-            self.force = max(self.force, self.motion.normal(z, k)[0])
+            if (force := self.motion.normal(z, k)[0]) > self.force:
+                self.force, self.topped = force, self.now
             if name != "part":
                 self.act(name, z, k)
                 continue
@@ -311,7 +312,6 @@ class _Walk:
                     z[-1] *= 1.0 / stiff if k.receding else stiff
             k.approaching = name == "return"
         if name == "turn":
-            self.first = self.now if math.isnan(self.first) else self.first
             if k.phase == LOADING:
                 self.turn(z, k)
         elif name == "reload":
@@ -499,7 +499,7 @@ class _Walk:
             "peak_depth_m": self.depth,
             "contact_time_s": self.last,
             "touching_time_s": self.touching,
-            "loading_time_s": self.first,
+            "loading_time_s": self.topped,
             "peak_force_N": self.force,
             "rebound_spin_rad_s": z[OM],
             "sliding_length_m": self.high - self.low,

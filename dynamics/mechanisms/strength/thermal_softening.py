@@ -47,6 +47,10 @@ class ThermalSoftening(FlowMechanism):
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the heat of deformation with the way to melting."""
+        return self._cold(situations, 0.02)
+
+    def _cold(self, situations: Sequence[Situation], least: float) -> str:
+        """Return why nothing comes so far to melting, or ""."""
         if reason := super().applies(situations):
             return reason
         largest, heat = 0.0, 0.0
@@ -55,7 +59,7 @@ class ThermalSoftening(FlowMechanism):
             heat = max(heat, hot)
             hot += max(around.temperature - around.ambient, 0.0)
             largest = max(largest, hot / (_melting(around) - around.ambient))
-        if largest < 0.02:
+        if largest < least:
             return (
                 f"deformation heats the metal by at most {heat:.1f} K, "
                 f"{100.0 * largest:.1f} % of the way to melting"
@@ -74,7 +78,8 @@ class ThermalSoftening(FlowMechanism):
                     f"the law holds from the reference, {first:g} K, to {last:.4g} K, shortly "
                     f"before the metal melts; this is {around.temperature:g} K"
                 )
-        return super().idle(situations)
+        # the lowest exponent makes the most of a little heat
+        return self._cold(situations, RULES.visible ** (1.0 / self.parameters[0].low))
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""

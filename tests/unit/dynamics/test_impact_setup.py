@@ -289,7 +289,8 @@ def test_where_the_tip_sticks_and_what_is_objected() -> None:
     assert steepest == pytest.approx(0.77, abs=0.01)
     for row in rows:
         assert row.inferred.objections
-        assert row.inferred.return_duration < row.inferred.duration
+        flight = row.measured.depth / (row.measured.restitution * row.measured.speed)
+        assert row.inferred.return_duration == pytest.approx(row.inferred.duration + flight)
 
 
 def test_friction_that_sticks_is_a_mistake() -> None:
@@ -374,12 +375,13 @@ def test_a_standard_deviation_of_a_mechanism_enters_the_band():
         ("damping = true", "contact-damping"),
         ("adhesion = true", "missing"),
         ("half-space-waves = true", r"mechanisms.half-space-waves: given beside"),
+        ("support-compliance = true", r"mechanisms.support-compliance: given beside"),
     ],
 )
 def test_a_wrong_mechanism_is_one_line(lines, words):
-    waves = 'support = "half-space"\nlaws' if "half-space" in lines else "laws"
+    moves = 'support = "rod"\nsupport_radius_m = 0.02\nlaws' if "given" in words else "laws"
     with pytest.raises(InputErrors, match=words):
-        setup(BALL.replace("laws", waves) + "[mechanisms]\n" + lines + "\n")
+        setup(BALL.replace("laws", moves) + "[mechanisms]\n" + lines + "\n")
 
 
 def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():

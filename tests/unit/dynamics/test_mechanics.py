@@ -76,6 +76,68 @@ def test_a_terminal_fall_is_answered(eta, arrives, cushioned):
     assert any("in place of 1.981 m/s" in line for line in blow.checks()) is (left > 0.0)
 
 
+@pytest.mark.parametrize("other", [{}, {"shape": "sphere", "radius_m": 0.01}])
+def test_a_film_that_stops_a_ball_leaves_what_goes_along_the_flat(other):
+    """Nothing has touched: spin and speed along stay, in a sweep as in a blow."""
+    made = setup(
+        target=GLASS | other, radius=3e-3, speed=0.05, environment={"viscosity_Pa_s": 0.1},
+        mechanisms={"squeeze-film": True}, friction={"coefficient": 0.2},
+        impact={"angle_deg": 45.0, "approach_spin_rad_s": 100.0},
+        sweep={"impact_speed_m_s": [0.05]},
+    )  # fmt: skip
+    law = LAWS["hertz"]
+    found, swept = blow_of(made, [law])["hertz"], made.swept(law)
+    assert (found.contacts, swept["contacts"][0]) == (0, 0)
+    for name, right in (
+        ("rebound_spin_rad_s", 100.0), ("tangential_rebound_m_s", -0.05),
+        ("rebound_speed_m_s", 0.0), ("kinetic_restitution", 0.0), ("plastic_work_J", 0.0),
+    ):  # fmt: skip
+        assert getattr(found, name) == pytest.approx(right, abs=1e-12)
+        assert swept[name][0] == pytest.approx(right, abs=1e-12)
+    assert found.kinetic_after_J == pytest.approx(swept["kinetic_after_J"][0]) != 0.0
+
+
+@pytest.mark.parametrize(
+    ("blow", "swept", "meets"),
+    [
+        ({"drop_height_m": 0.1}, {"impact_speed_m_s": [0.5]}, [0.7, 1.0]),
+        ({"impact_speed_m_s": 1.4007}, {"drop_height_m": [0.1]}, [1.0, 0.7]),
+        ({"drop_height_m": 0.1}, {"drop_height_m": [0.1, 1.0]}, [0.7**0.1, 0.7**0.1]),
+        ({"drop_height_m": 0.1}, {"drop_height_m": [1e-3, 0.1]}, [0.7, 0.7**0.01]),
+    ],
+)
+def test_a_blow_and_its_sweep_each_arrive_as_they_say(blow, swept, meets):
+    """A height of fall loses (1 - zeta)^(H/H_max), H_max of all in the file; a speed nothing."""
+    loss = {"speed_loss": 0.3} | ({"loss_growth": 1.0} if len(*swept.values()) > 1 else {})
+    made = setup(
+        speed=0.0, impact=blow, sweep=swept, gravity_m_s2=9.81,
+        mechanisms={"impact-speed-loss": loss},
+    )  # fmt: skip
+    law = LAWS["hertz"]
+    found, rows = blow_of(made, [law])["hertz"], made.swept(law)
+    stated = [made.plain(law).approach.speed, rows["impact_speed_m_s"][0]]
+    came = [found.rebound_speed_m_s, rows["rebound_speed_m_s"][0]]
+    assert np.array(came) / stated == pytest.approx(meets, rel=1e-6)
+
+
+@pytest.mark.parametrize(("chi", "speed"), [(0.15, 1.0), (0.3, 5.0)])
+def test_the_largest_force_of_a_damped_contact_comes_before_the_largest_depth(chi, speed):
+    """F = k d^1.5 (1 + chi v) and m v dv = -F dd, which has an integral."""
+    damped = {"contact-damping": {"damping_s_m": chi}}
+    made = setup(speed=speed, mechanisms=damped, sweep={"impact_speed_m_s": [speed]})
+    law = LAWS["hertz"]
+    scene, found = made.plain(law), blow_of(made, [law])["hertz"]
+    k, m = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(scene.pair.R), scene.striker.mass
+    v = np.linspace(speed, 0.0, 400_001)
+    lost = (chi * (speed - v) - np.log((1.0 + chi * speed) / (1.0 + chi * v))) / chi**2
+    depth = (2.5 * m * lost / k) ** 0.4
+    force = k * depth**1.5 * (1.0 + chi * v)
+    time = np.concatenate([[0.0], np.cumsum(2.0 * np.diff(depth) / (v[1:] + v[:-1]))])
+    assert found.peak_force_N == pytest.approx(force.max(), rel=3e-4)
+    assert made.swept(law)["peak_force_N"][0] == pytest.approx(force.max(), rel=3e-4)
+    assert found.loading_time_s == pytest.approx(time[force.argmax()], rel=0.02)
+
+
 def test_what_a_liquid_bears_does_not_fall():
     light = {**STEEL, "density_kg_m3": 500.0}
     one = setup(
@@ -223,6 +285,33 @@ def test_a_law_of_heat_ends_below_its_reference_and_at_melting(kelvin, ends):
         return
     with pytest.raises(InputError, match="the reference"):
         one.check_laws([LAWS["fitted"]])
+
+
+def test_a_low_exponent_softens_at_a_little_heat():
+    """At 27 K of 1507 on the way to melting 1 - T*^0.4 is 0.800."""
+    warm = {
+        "environment": {"temperature_K": 293.0}, "impact": {"temperature_K": 320.0},
+        "mechanisms": {"thermal-softening": {"softening_exponent": 0.4}},
+    }  # fmt: skip
+    flat = {**STEEL, "cp_J_kgK": 3e4, "melting_K": 1800.0}
+    at, left = {"law": "fitted", "ball": {**STEEL, "Sy_Pa": 3e9}}, 1.0 - (27.0 / 1507.0) ** 0.4
+    found, _ = struck(target={**flat, "Sy_Pa": 3e8}, **at, **warm)
+    stated, _ = struck(target={**STEEL, "Sy_Pa": left * 3e8}, **at)
+    assert found.restitution == pytest.approx(stated.restitution, rel=1e-2)
+
+
+def test_a_smooth_surface_is_not_rough():
+    """Ra 0 is no roughness, not that of a ground surface; a sweep begins with it."""
+    both = {"law": "fitted", "ball": {**STEEL, "Sy_Pa": 3e9}}
+    flat, rough = {**STEEL, "Sy_Pa": 3e8}, {"mechanisms": {"roughness": True}}
+    with pytest.raises(InputError, match="smooth, as stated"):
+        struck(target=flat | {"Ra_m": 0.0}, **both, **rough)
+    swept = setup(target=flat | {"Ra_m": 0.0}, sweep={"target.Ra_m": [0.0, 1e-6]}, **both, **rough)
+    swept.check_laws([LAWS["fitted"]])
+    smooth, _ = struck(target=flat, **both)
+    first, second = swept.swept(LAWS["fitted"])["restitution"]
+    assert first == pytest.approx(smooth.restitution, rel=1e-6)
+    assert second < 0.99 * first
 
 
 @pytest.mark.parametrize("speed", [1e-3, 3e-3, 1e-2])
