@@ -101,8 +101,9 @@ class AirDrag(Mechanism):
         """Slow the approach."""
         if values["drag"] == 0.0:
             return scene
-        speed = _arriving(scene, values, around)
-        return scene.with_(approach=replace(scene.approach, speed=speed))
+        old, speed = scene.approach, _arriving(scene, values, around)
+        along = old.tangential * (speed / old.speed if _leans(scene, around) else 1.0)
+        return scene.with_(approach=replace(old, speed=speed, tangential=along))
 
     def after(
         self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
@@ -134,16 +135,23 @@ def _fluid(values: Values, around: Surroundings) -> Fluid:
     return Fluid(values["drag"] * density, values["drag"] * viscosity)
 
 
+def _leans(scene: Scene, around: Surroundings) -> bool:
+    """Whether a ball falls from a height on a flat that leans: braked along its path."""
+    return around.from_height and scene.striker.length == 0.0 and scene.approach.tangential != 0.0
+
+
 def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:
     """Normal speed at the flat of a striker whose stated speed is gravity's alone [m/s]."""
-    stated, g = scene.approach.speed, scene.gravity
+    a, g, leans = scene.approach, scene.gravity, _leans(scene, around)
+    stated = math.hypot(a.speed, a.tangential) if leans else a.speed
     whole = stated**2 / (2.0 * g) if g > 0.0 else math.inf
     fall = whole if around.from_height else min(values["reading_m"], whole)
-    start, a = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0)), scene.approach
-    fluid = _fluid(values, around)
-    arrived = _fallen(scene.striker, fluid, start, fall, a.tangential, a.angle, g)
+    start = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0))
+    fluid, along = _fluid(values, around), 0.0 if leans else a.tangential
+    arrived = _fallen(scene.striker, fluid, start, fall, along, a.angle, g)
     # one that the fluid stops keeps a twentieth, so that there is an impact
-    return float(np.fmax(arrived, 0.0 if around.from_height else 0.05 * stated))
+    kept = float(np.fmax(arrived, 0.0 if around.from_height else 0.05 * stated))
+    return kept * (a.speed / stated) if leans else kept
 
 
 # every fall is asked for before the motion and after it

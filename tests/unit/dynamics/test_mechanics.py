@@ -138,6 +138,19 @@ def test_the_largest_force_of_a_damped_contact_comes_before_the_largest_depth(ch
     assert found.loading_time_s == pytest.approx(time[force.argmax()], rel=0.02)
 
 
+def test_a_ball_that_falls_on_a_flat_that_leans_is_braked_along_its_path():
+    light = {"ball": {**STEEL, "density_kg_m3": 80.0}, "radius": 0.02, "speed": 0.0}
+    speeds = []
+    for angle in (90.0, 45.0):
+        fall = {"drop_height_m": 1.0, "angle_deg": angle}
+        found, _ = struck(**light, impact=fall, mechanisms={"air-drag": True}, gravity_m_s2=9.81)
+        mass = 80.0 * 4.0 / 3.0 * math.pi * 0.02**3
+        speeds.append(math.sqrt(2.0 * found.kinetic_before_J / mass))
+    assert -found.tangential_rebound_m_s == pytest.approx(speeds[0] / math.sqrt(2.0), rel=1e-6)
+    assert speeds[1] == pytest.approx(speeds[0], rel=1e-6)
+    assert speeds[0] < 0.97 * math.sqrt(2.0 * 9.81)
+
+
 def test_what_a_liquid_bears_does_not_fall():
     light = {**STEEL, "density_kg_m3": 500.0}
     one = setup(
