@@ -25,7 +25,9 @@ from .words import (
 
 NOT_UNDERSTOOD = "left out: not understood"
 ABOVE = "row {}, left out: above the headers"
-_NUMBER = re.compile(r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
+_NUMBER = re.compile(
+    r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([eE][+-]?\d+)?([^\d(\[]{0,6}|(±|\+/?-).*)"
+)
 _STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*\(([^)]*)\)")
 _NORMAL = re.compile(r"norm|\bv[ _]?n\b|_n_")
 """Of a speed along the normal of the flat."""
@@ -105,10 +107,10 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
         here = Head()
         for end in range(first + 1, min(first + _DEPTH, len(rows)) + 1):
             headers = _headers(rows[first:end])
-            if not headers:
+            if not headers and not all(map(_is_units, rows[first:end])):  # above the names
                 break
             units = [_is_units(row) for row in rows[first : end + 1]]
-            if any(units[:-1]) or not units[-1] or end == len(rows):  # or these belong to them
+            if headers and (any(units[:-1]) or not units[-1] or end == len(rows)):  # or they miss
                 says = [_as_given(header, given) for header in headers]
                 here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
         found = max(found, here, key=lambda head: (head.known, head.first - head.end))
@@ -132,7 +134,9 @@ def _headers(block: Sequence[Sequence[str]]) -> list[str]:
     names = [row for row in block if row not in units]
     *above, lowest = names or [[]]
     titles = all(_is_title(row, 0) for row in above)
-    sound = titles and (_is_title(lowest) or _counts(lowest, above[-1:]))
+    sound = titles and (
+        _is_title(lowest, 0 if above else 0.5) or _counts(lowest, above[-1:])
+    )
     if not sound or len(units) > 1:
         return []
     below = [*names[1:], *units]
@@ -172,22 +176,25 @@ def _is_units(row: Sequence[str]) -> bool:
 def _is_title(row: Sequence[str], most: float = 0.5) -> bool:
     """Whether a row holds names or titles: few numbers, no remark, no line of its own.
 
-    Above other names no number: Kugeldurchmesser [mm];8,0 speaks of all rows.
+    Above other names no number, Kugeldurchmesser [mm];8,0 speaks of all rows; nor below: a first
+    drop beside words, A1;Kim;50;18;ok.
     """
     filled = [cell for cell in row if cell]
     if not filled or (len(set(filled)) < 2 and row[0]):
         return False
-    numbers = sum(
-        bool(_NUMBER.fullmatch(cell)) and not _ORDINAL.fullmatch(bare(cell)) for cell in filled
-    )
+    numbers = sum(map(_is_number, filled))
     lines = sum(_SAID_OF.search(cell) is not None for cell in filled)
     comment = row[0].startswith("#") and row[0].strip("# ")
     return not comment and 2 * lines < len(filled) and numbers <= most * len(filled)
 
 
+def _is_number(cell: str) -> bool:
+    return bool(_NUMBER.fullmatch(cell)) and not _ORDINAL.fullmatch(bare(cell))
+
+
 def _counts(row: Sequence[str], above: Sequence[Sequence[str]]) -> bool:
-    """Whether a row numbers the readings below a title: 1, 2, 3, and nothing else."""
-    places = [k for k, cell in enumerate(row) if cell]
+    """Whether a row numbers the readings below a title, 1, 2, 3, and has no other number."""
+    places = [k for k, cell in enumerate(row) if _is_number(cell)]
     numbers = [row[k] for k in places]
     if not above or len(places) < 2 or not all(n.isdecimal() and len(n) == 1 for n in numbers):
         return False
