@@ -114,7 +114,10 @@ FROM_NORMAL = (
 """Of an angle: where the fall is upright, the plate's own is one."""
 ALONG = r"tangent|tangenc|horizont|styczn|切向|接線|水平"
 RANGE = r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd|zakres)\b|\w{4} (n|anzahl|count)$"
-THEORY = r"theor|teor|predict|vorherge|simul|symul|\bfe[ma]\b|hertz|expected|erwart|理论|仿真|模拟|[予预]测"
+THEORY = (
+    r"theor|teor|predict|vorherge|s[iy]mul|expected|\bfe[ma]\b|hertz|erwart|"
+    "理论|仿真|模拟|预测"
+)
 """Of numbers that nobody measured."""
 DERIVED = r"calc|berechn|comput|oblicz|wylicz|计算|計算"
 CORRECTED = r"corr|korr|korygow|补正|補正|修正"
@@ -237,8 +240,8 @@ KINDS = (
     SheetKind("trial", "text",
         (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"
          r"sample|specimen|drop (no|number)|essai|mesure|eprouvette|prova|misura|campione|ensayo|"
-         r"medida|probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|^drop( ?#)?$|^n°|"
-         "编号|序号|番号|试样|試料|試番|試験 ?no",)),
+         r"medida|probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|"
+         r"^drop( ?#)?$|^n°|编号|序号|番号|试样|試料|試番|試験 ?no",)),
     *map(plain_kind, (
         "approach_tangential_m_s", "approach_spin_rad_s", "tangential_rebound_m_s",
         "friction_impulse_ratio", "sliding_length_m", "scar_excess_m", "press_depth_m",
