@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from ....core.errors import InputError
@@ -121,7 +121,7 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
                 break
             units = [_is_units(row) for row in rows[first : end + 1]]
             if headers and (any(units[:-1]) or not units[-1] or end == len(rows)):  # or they miss
-                says = [_as_given(header, given) for header in headers]
+                says = _of_dents([_as_given(header, given) for header in headers])
                 here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
         found = max(found, here, key=lambda head: (head.known, head.first - head.end))
     return found
@@ -234,7 +234,6 @@ def columns_of(
         (" ".join(dict.fromkeys(filter(None, row))), ABOVE.format(k))
         for k, row in enumerate(rows[: head.first], start=1) if any(row)
     ]  # fmt: skip
-    head = _with_pairs(head)
     columns: list[SheetColumn] = []
     quantities = {kind_of(text) for text in head.says if not kinds.is_spread(text)}
     for place, (header, says) in enumerate(zip(head.headers, head.says, strict=True)):
@@ -307,14 +306,12 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
     return "sums up its neighbours" if column in means and len(means) < len(same) else ""
 
 
-def _with_pairs(head: Head) -> Head:
-    """Headers whose d1 and d2 are said to be of a dent, where no other header speaks of one."""
-    said = [kind_of(text) for text in head.says]
-    pair = [_PAIR.fullmatch(kinds.named(text)) is not None for text in head.says]
-    if sum(pair) != 2 or any(kind is not None and kind.name == DENTS[0] for kind in said):
-        return head
-    says = [f"dent {text}" if one else text for text, one in zip(head.says, pair, strict=True)]
-    return replace(head, says=says)
+def _of_dents(says: list[str]) -> list[str]:
+    """What headers say, d1 and d2 of a dent where no other speaks of one."""
+    pair = [_PAIR.fullmatch(kinds.named(text)) is not None for text in says]
+    if sum(pair) != 2 or any(kind and kind.name == DENTS[0] for kind in map(kind_of, says)):
+        return says
+    return [f"dent {text}" if one else text for text, one in zip(says, pair, strict=True)]
 
 
 def _check_angle(says: str, header: str, source: str) -> None:

@@ -326,6 +326,9 @@ def test_two_diameters_of_one_round_are_a_dents(tmp_path):
     sheet = read_text(tmp_path, "Nr;Fallhöhe [cm];d1 [mm];d2 [mm];HBW\n1;50;0,85;0,87;182\n")
     assert each(sheet, "dent_diameter_m") == pytest.approx([8.6e-4])
     assert columns(sheet)["HBW"] == "left out: not understood"
+    sheet = read_text(tmp_path, "Load (N);d1 (mm);d2 (mm);HBW\n-1000;0,62;0,64;180\n")
+    assert each(sheet, "dent_diameter_m") == pytest.approx([6.3e-4])
+    assert each(sheet, "load_N") == [1000.0]
 
 
 @pytest.mark.parametrize("lang", OF_LABORATORIES)
