@@ -57,20 +57,18 @@ def impact(
 def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..core.inputs.toml_input import read_toml
 
-    read_toml(path)  # what is no TOML is told before the simulation is loaded
-    from ..dynamics.files.blow import blow_of
+    read_toml(path)  # what is no TOML, or no law, is told before the simulation is loaded
+    laws = laws_named(names) if names else []
     from ..dynamics.files.setup import read_setup
+
+    setup = read_setup(path)
+    laws = laws or laws_named(list(setup.laws), source=str(path), key="impact.laws")
+    tell_first_use()
+    from ..dynamics.files.blow import blow_of
     from ..dynamics.files.tables import write_hdf5
     from ..dynamics.report.picture import picture
 
     console = new_console()
-    setup = read_setup(path)
-    tell_first_use()
-    laws = (
-        laws_named(names)
-        if names
-        else laws_named(list(setup.laws), source=str(path), key="impact.laws")
-    )
     blow = blow_of(setup, laws)
     traces, found = blow.traces, blow.impacts
     console.print(setup.name)

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, Field
 from ..core.inputs.csv_table import Problems
 from ..core.inputs.toml_input import InputTable
 from ..core.observables import OBSERVABLES
+from .trials import NORMAL
 
 if TYPE_CHECKING:
     from .recording_set import RecordingSet
@@ -24,6 +25,12 @@ SETTING = 1.05
 def _increasing(given: tuple[float, float]) -> tuple[float, float]:
     if not 0.0 < given[0] < given[1]:
         raise ValueError("two increasing numbers above 0")
+    return given
+
+
+def _upright(given: tuple[float, float]) -> tuple[float, float]:
+    if given[1] > NORMAL:
+        raise ValueError(f"two increasing angles up to {NORMAL:g}, a normal impact")
     return given
 
 
@@ -66,7 +73,7 @@ class Bench(InputTable):
 
     speeds_m_s: Range | None = None
     """Normal speeds of approach."""
-    angles_deg: Range | None = None
+    angles_deg: Annotated[Range, AfterValidator(_upright)] | None = None
     """Angles, as in trials.csv."""
     loads_N: Range | None = None
     """Loads of its press."""

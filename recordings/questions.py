@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 _NITROGEN = 77.4
 """Boiling point [K] (CRC Handbook)."""
 
+# limit: way in radii at the speed of approach [-]: a soft ball stays for 2.5, a steel one 0.05
+_RADII = 5.0
 # limit: highest fall that is not asked back [m]: a stairwell
 _STAIRWELL = 20.0
 
@@ -52,17 +54,20 @@ def _gravity(found: RecordingSet) -> Iterator[str]:
 
 
 def _deep(found: RecordingSet) -> Iterator[str]:
-    """Craters deeper than the tip is round."""
-    if "permanent_depth_m" not in found.observed:
-        return
-    depth = found.values("permanent_depth_m")
+    """Craters deeper than the tip is round, contacts in which it would go on by many radii."""
     tip = np.array([body.tip_radius_m.value for body in found.strikers()])
-    if (deep := np.flatnonzero(depth > tip)).size:
-        k = int(deep[0])
-        yield (
-            f"permanent_depth_m {depth[k]:g} of {found.trials.trial[k]} is above the tip's radius, "
-            f"{tip[k]:g}: is it in another unit?"
-        )
+    most = {
+        "permanent_depth_m": (tip, "the tip's radius"),
+        "contact_time_s": (_RADII * tip / found.approach.normal, f"the time of {_RADII:g} radii"),
+    }
+    for name, (highest, what) in most.items():
+        values = found.values(name) if name in found.observed else np.full(tip.shape, np.nan)
+        if (beyond := np.flatnonzero(values > highest)).size:
+            k = int(beyond[0])
+            yield (
+                f"{name} {values[k]:g} of {found.trials.trial[k]} is above {what}, "
+                f"{highest[k]:g}: is it in another unit?"
+            )
 
 
 def _twice(found: RecordingSet) -> Iterator[str]:

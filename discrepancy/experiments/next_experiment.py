@@ -171,7 +171,8 @@ def _fall(one: Condition, stated: Mapping[str, float]) -> str:
     """The height of an upright blow, for who sets heights."""
     if not one.around.from_height or one.incidence < 0.5 * math.pi - 1e-6:
         return ""
-    return f" (a fall of {1e3 * one.speed**2 / (2.0 * stated['gravity_m_s2']):.3g} mm)"
+    fall = 1e3 * one.speed**2 / (2.0 * stated["gravity_m_s2"])
+    return f" (a fall of {float(f'{fall:.3g}'):g} mm)"  # 1000, no 1e+03
 
 
 def _options(simulator: Simulator) -> _Plan:

@@ -30,6 +30,8 @@ from .workbook import workbook_rows
 
 BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 """Endings of workbooks."""
+WIDE = "  "
+"""Two blanks or more, of columns that stand one below the other."""
 _MINUS = "\u2212"
 """As typesetters write it."""
 _POINT = re.compile(r"[+-]?\d*\.\d+")
@@ -292,6 +294,9 @@ def _split(lines: Sequence[str], source: str, by: str, above: int = 0) -> Iterat
     if by == " ":
         yield from (line.split() for line in lines)
         return
+    if by == WIDE:
+        yield from _in_columns([line.expandtabs().rstrip() for line in lines])
+        return
     reader = csv.reader(lines, delimiter=by, skipinitialspace=True)
     try:
         yield from reader
@@ -300,6 +305,20 @@ def _split(lines: Sequence[str], source: str, by: str, above: int = 0) -> Iterat
             f"not a table ({error})", source=source, key=f"row {above + reader.line_num}",
             allowed="a table",
         ) from None  # fmt: skip
+
+
+def _in_columns(lines: Sequence[str]) -> Iterator[list[str]]:
+    """The cells of lines that two blanks part at one place in each; titles are a cell of theirs."""
+    words = [len(re.split(r" {2,}", line.strip())) for line in lines]
+    table = [line for line, n in zip(lines, words, strict=True) if 2 * n >= max(words) > 1]
+    held = "".join(
+        "x" if any(c > " " for c in at) else " " for at in zip_longest(*table, fillvalue=" ")
+    )
+    starts = [found.start() for found in re.finditer(r"(?<![^ ] )(?<![^ ])x", held)]
+    for line in lines:
+        ends = [*starts[1:], None]
+        pairs = zip(starts, ends, strict=True) if line in table else [(0, None)]
+        yield [line[a:b] for a, b in pairs]
 
 
 def _separator(lines: Sequence[str], source: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from statistics import median
 
 from ....recordings.columns import CONDITIONS, MEASURED
 from ...measured import Measured
@@ -14,6 +15,7 @@ from ..heading import in_short
 from ..workbook import NumberCell
 from .headers import SheetColumn
 from .kinds import CELSIUS
+from .words import SIGNED
 
 _CELL = re.compile(
     r"(?P<number>[+-]?[\d.,'’ ]*\d(?:[eEdD][+-]?\d+)?)"
@@ -55,8 +57,8 @@ def decimals_of(
     """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it.
 
     Of both each column keeps what its own numbers show, as 0,670 and 0.797 do, but not 1,234.5.
-    Where all may be of thousands, a comma is that sign `between` whose cells are semicolons, and
-    in a column that has no other numbers each sign is, beside one such as 3000 without.
+    Where all may be of thousands, in a column that has no other numbers a comma is that sign
+    `between` whose cells are semicolons, and each sign is, beside one such as 3000 without.
     """
     measured = [c for c in columns if c.kind.quantity != "text"]
     each = [[n for row in rows if (n := _number_of(row[c.place]))] for c in measured]
@@ -73,7 +75,9 @@ def decimals_of(
         alike = any(_LONG.fullmatch(n) for n in every)
         for numbers in each:
             seen = {n[-4] if _GROUPED.fullmatch(n) else "" for n in numbers}
-            signs |= seen if alike and len(seen) == 1 else seen & {"," if between == ";" else ""}
+            signs |= (
+                seen if len(seen) == 1 and (alike or (seen == {","} and between == ";")) else set()
+            )
         signs.discard("")
     return signs.pop() if len(signs) == 1 else ""
 
@@ -113,4 +117,14 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
     if column.kind.quantity == "temperature" and unit in CELSIUS:
         return Measured(number if column.spread else number + _ICE, std)
     size = UNITS[column.kind.quantity].get(unit)
-    return None if size is None else Measured(number, std).scaled(size)
+    return None if size is None else Measured(column.sign * number, std).scaled(size)
+
+
+def turn_signs(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn], sheet: str) -> None:
+    """Count downward speeds, and forces of compression, as above zero where most are below it."""
+    for column in columns:
+        if column.kind.name in SIGNED and not column.spread:
+            seen = (number_in(row[column.place], column, sheet) for row in rows)
+            if (numbers := [v.value for v in seen if v]) and median(numbers) < 0.0:
+                column.sign = -1.0
+            column.unitless = False  # only rows that are taken ask for it

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,10 +12,11 @@ from ....core.inputs.csv_table import rows_with, selection
 from ....core.inputs.input_file import checked_file
 from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
-from ..file import cells_of, decoded, is_book, refuse_torn
+from ..file import WIDE, cells_of, decoded, is_book, refuse_torn
+from ..heading import is_unit
 from ..packed import TABLE_BYTES
 from ..workbook import NumberCell, rows_of_sheets
-from .cell import decimals_of
+from .cell import decimals_of, turn_signs
 from .headers import Head, SheetColumn, columns_of, given_columns, head_of
 from .kinds import SUMMARY, kind_of, without_unit
 from .rows import SeveralBallsError, Sheet, SheetRows, trials_of
@@ -26,8 +28,10 @@ _TYPED = str.maketrans({
     **{wide: chr(ord(wide) - 0xFEE0) for wide in map(chr, range(0xFF01, 0xFF5F))},
 })  # fmt: skip
 """Signs of typesetters as they are typed: the minus, blanks that do not break, wide letters."""
-_CODINGS = ("cp1250", "gb18030", "cp932")
-"""Of old spreadsheets, beside Latin: Polish, Chinese, Japanese."""
+_CODINGS = ("cp1250", "gb18030", "cp932", "mac_roman", "big5", "euc_jp")
+"""Of old spreadsheets, beside Latin: Polish, Chinese, Japanese, of Macintosh, Taiwan, Unix."""
+_RULER = re.compile(r"(?=.*(--|==|__))[-=_+|: ]+")
+"""A line between headers and rows."""
 # limit: lines by which encoding and separator are chosen [-]: headers, and numbers below them
 _LINES = 100
 
@@ -60,6 +64,7 @@ def read_sheet(
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
     _fill_balls(rows[head.end :], kept)
+    _join_units(rows[head.end :], kept)
     if select:
         name, value = selection(select, source=source)
         place = _place(head, name, source, "select")
@@ -69,6 +74,7 @@ def read_sheet(
     # where commas part the cells, points part no thousands
     points = between == "," and not any("," in c for row in rows for c in row)
     decimals = decimals_of(rows[head.end :], kept, between) or "." * points
+    turn_signs(rows[head.end :], kept, decimals)
     found = trials_of(SheetRows(rows, head.end, kept, decimals, source), told)
     return replace(found, left_out=(*found.left_out, *others))
 
@@ -83,6 +89,16 @@ def _fill_balls(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> No
                 last = row[place]
             elif not row[place] and any(row[k] for k in numbers):
                 row[place] = last
+
+
+def _join_units(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> None:
+    """Write a unit that stands in the next column, 50;cm, behind its number."""
+    taken = {column.place for column in columns}
+    for place in (c.place for c in columns if c.unit is None and c.place + 1 not in taken):
+        for row in rows:
+            number, *unit = row[place : place + 2]
+            if number and any(map(is_unit, unit)):
+                row[place] = type(number)(f"{number} {unit[0]}")
 
 
 def read_balls(path: Path, columns: Sequence[str] = (), *, sheet: str = "") -> dict[str, Sheet]:
@@ -149,10 +165,16 @@ def _of_text(
     utf8 = raw.decode(errors="ignore").encode() == raw
     if not utf8 and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
-    every = [text.splitlines(keepends=True) for text in texts]
+    every = [
+        [
+            "\n" if _RULER.fullmatch(line.strip()) else line
+            for line in text.splitlines(keepends=True)
+        ]
+        for text in texts
+    ]
     tried = [
         (lines, between, head_of(_typed(rows), given).known)
-        for lines in every for one in ("", ";", "\t", ",")
+        for lines in every for one in ("", ";", "\t", ",", "|", WIDE)
         for between, rows in [cells_of(lines[:_LINES], source, separator=one)]
     ]  # fmt: skip
     # blanks part words too: where another separator shows numbers, it is that

@@ -15,18 +15,26 @@ from . import kinds
 from .kinds import CELSIUS, kind_of, unit_of
 from .words import (
     APPROACHES,
+    CORRECTED,
+    DENTS,
+    DIAMETER,
     FROM_NORMAL,
     REBOUND_ANGLE,
     REBOUND_SPEED,
     UNDERSTOOD,
     SheetKind,
     bare,
+    has,
 )  # fmt: skip
 
 NOT_UNDERSTOOD = "left out: not understood"
 ABOVE = "row {}, left out: above the headers"
-_NUMBER = re.compile(r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([^\d(\[]{0,6}|(±|\+/?-).*)")
-_STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*\(([^)]*)\)")
+_NUMBER = re.compile(
+    r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([eE][+-]?\d+)?([^\d(\[]{0,6}|(±|\+/?-).*)"
+)
+_STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*[(\[]([^)\]]*)[)\]]")
+_PAIR = re.compile(rf"(d|({DIAMETER})\w*)\.?[ _]?[12xy]")
+"""Two diameters of one round, as a dent is read: d1, d2."""
 _NORMAL = re.compile(r"norm|\bv[ _]?n\b|_n_")
 """Of a speed along the normal of the flat."""
 _ORDINAL = re.compile(r"\d\.?(st|nd|rd|th|e|er|re|ere|eme|o|a|回目?|次)\.?")
@@ -47,7 +55,8 @@ class SheetColumn:
 
     `unit` is None where the header names none, `spread` whether it holds the standard deviations of
     another column, `taken` how many cells were read, `unitless` whether one asked for the unit,
-    `decimals` signs before its decimals where the sheet has two.
+    `decimals` signs before its decimals where the sheet has two, `sign` -1 where a speed or force
+    is counted along an axis that points the other way.
     """
 
     place: int
@@ -58,6 +67,7 @@ class SheetColumn:
     taken: int = 0
     unitless: bool = False
     decimals: str = ""
+    sign: float = 1.0
 
     @property
     def no_unit(self) -> str:
@@ -84,10 +94,12 @@ class Head:
     def known(self) -> tuple[int, int, int, int]:
         """How much is understood: quantities, columns, units, texts."""
         said = [(kind, text) for text in self.says if (kind := kind_of(text)) is not None]
-        numbers = [(kind.name, text) for kind, text in said if kind.quantity != "text"]
+        # a title in merged cells says one thing in all of them
+        numbers = {(kind.name, text) for kind, text in said if kind.quantity != "text"}
+        texts = sum(kind.quantity == "text" for kind, _ in said)
         units = sum(unit_of(text, kind) is not None for kind, text in said)
         several = len({(name, kinds.is_spread(text)) for name, text in numbers})
-        return several, len(numbers), units, len(said) - len(numbers)
+        return several, len(numbers), units, texts
 
     @property
     def understood(self) -> int:
@@ -105,11 +117,11 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
         here = Head()
         for end in range(first + 1, min(first + _DEPTH, len(rows)) + 1):
             headers = _headers(rows[first:end])
-            if not headers:
+            if not headers and not all(map(_is_units, rows[first:end])):  # above the names
                 break
             units = [_is_units(row) for row in rows[first : end + 1]]
-            if any(units[:-1]) or not units[-1] or end == len(rows):  # or these belong to them
-                says = [_as_given(header, given) for header in headers]
+            if headers and (any(units[:-1]) or not units[-1] or end == len(rows)):  # or they miss
+                says = _of_dents([_as_given(header, given) for header in headers])
                 here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
         found = max(found, here, key=lambda head: (head.known, head.first - head.end))
     return found
@@ -119,7 +131,7 @@ def _as_given(header: str, given: Mapping[str, str]) -> str:
     """What the user says of a header, with its own unit where that has none."""
     said = given.get(bare(header)) or given.get(bare(kinds.without_unit(header)))
     if said is None:
-        return _STD_OF.sub(r"\2 ±", header)
+        return _STD_OF.sub(lambda m: f"± ({m[2]})" if is_unit(m[2]) else f"{m[2]} ±", header)
     kind = kind_of(said)
     if kind is None or unit_of(said, kind) is not None:
         return said
@@ -132,7 +144,7 @@ def _headers(block: Sequence[Sequence[str]]) -> list[str]:
     names = [row for row in block if row not in units]
     *above, lowest = names or [[]]
     titles = all(_is_title(row, 0) for row in above)
-    sound = titles and (_is_title(lowest) or _counts(lowest, above[-1:]))
+    sound = titles and (_is_title(lowest, 0 if above else 0.5) or _counts(lowest, above[-1:]))
     if not sound or len(units) > 1:
         return []
     below = [*names[1:], *units]
@@ -172,22 +184,25 @@ def _is_units(row: Sequence[str]) -> bool:
 def _is_title(row: Sequence[str], most: float = 0.5) -> bool:
     """Whether a row holds names or titles: few numbers, no remark, no line of its own.
 
-    Above other names no number: Kugeldurchmesser [mm];8,0 speaks of all rows.
+    Above other names no number, Kugeldurchmesser [mm];8,0 speaks of all rows; nor below: a first
+    drop beside words, A1;Kim;50;18;ok.
     """
     filled = [cell for cell in row if cell]
     if not filled or (len(set(filled)) < 2 and row[0]):
         return False
-    numbers = sum(
-        bool(_NUMBER.fullmatch(cell)) and not _ORDINAL.fullmatch(bare(cell)) for cell in filled
-    )
+    numbers = sum(map(_is_number, filled))
     lines = sum(_SAID_OF.search(cell) is not None for cell in filled)
     comment = row[0].startswith("#") and row[0].strip("# ")
     return not comment and 2 * lines < len(filled) and numbers <= most * len(filled)
 
 
+def _is_number(cell: str) -> bool:
+    return bool(_NUMBER.fullmatch(cell)) and not _ORDINAL.fullmatch(bare(cell))
+
+
 def _counts(row: Sequence[str], above: Sequence[Sequence[str]]) -> bool:
-    """Whether a row numbers the readings below a title: 1, 2, 3, and nothing else."""
-    places = [k for k, cell in enumerate(row) if cell]
+    """Whether a row numbers the readings below a title, 1, 2, 3, and has no other number."""
+    places = [k for k, cell in enumerate(row) if _is_number(cell)]
     numbers = [row[k] for k in places]
     if not above or len(places) < 2 or not all(n.isdecimal() and len(n) == 1 for n in numbers):
         return False
@@ -210,9 +225,10 @@ def columns_of(
             "columns such as drop height (cm), rebound height (mm), dent diameter (mm), or "
             "--column 'HEADER=rebound height mm'"
         )
+        across = head_of([*map(list, zip(*rows, strict=True))], {}).known[1] > 1
         raise InputError(
-            "no row of headers is understood", source=source,
-            allowed="; ".join([usual, *filter(None, asked)][:4]),
+            "headers stand in a column, not a row" if across else "no row of headers is understood",
+            source=source, allowed="; ".join([usual, *filter(None, asked)][:4]),
         )  # fmt: skip
     told = [
         (" ".join(dict.fromkeys(filter(None, row))), ABOVE.format(k))
@@ -221,6 +237,7 @@ def columns_of(
     columns: list[SheetColumn] = []
     quantities = {kind_of(text) for text in head.says if not kinds.is_spread(text)}
     for place, (header, says) in enumerate(zip(head.headers, head.says, strict=True)):
+        _check_angle(says, header, source)
         spread = kinds.is_spread(says)
         kind = kind_of(says) or (_beside(columns, place, says) if spread else None)
         cells = [row[place] for row in rows[head.end :] if row[place]]
@@ -259,12 +276,7 @@ def _beside(columns: Sequence[SheetColumn], place: int, says: str) -> SheetKind 
 
 def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) -> str:
     """Why a column is not taken beside the others; empty where it is."""
-    words, name = bare(column.header), column.kind.name
-    if name in ("angle_deg", REBOUND_ANGLE) and re.search(FROM_NORMAL, words):
-        raise InputError(
-            "an angle from the normal", source=source, key=column.header,
-            allowed="that between velocity and flat, or axis and flat: 90 for a normal impact",
-        )  # fmt: skip
+    name = column.kind.name
     if column.kind.quantity == "text":
         return ""
     if name == REBOUND_ANGLE:
@@ -273,18 +285,43 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
         if "angle_deg" not in beside or any(map(_NORMAL.search, speeds)):
             return "not beside an angle and speeds along the path"
     same = [c for c in columns if c.kind == column.kind and not c.spread]
+    ends = [c for c in same if kinds.END.search(bare(kinds.without_unit(c.header)))]
+    if len(ends) < len(same) and any(kinds.LEAST.search(bare(c.header)) for c in ends):
+        if column in ends:
+            return "sums up its neighbours"
+        same = [c for c in same if c not in ends]
     if column.spread:
         alone = sum(c.kind == column.kind and c.spread for c in columns) < len(same)
         return "sums up its neighbours" if alone else ""
-    if same[0] is not column and name in APPROACHES:
+    raw = has(CORRECTED, bare(same[0].header)) == has(CORRECTED, bare(column.header))
+    if same[0] is not column and (name in APPROACHES or not raw):
         raise InputError(
             f"{name} stands in {same[0].header!r} already", source=source, key=column.header,
-            allowed="one such column; a table beside another in a file of its own",
+            allowed=f"one such column, --column {f'{column.header}=note'!r} for the other; a table "
+            "beside another in a file of its own",
         )  # fmt: skip
     if same[0] is not column and name in CONDITIONS:
         return f"{name} stands in {same[0].header!r} already"
     means = [c for c in same if kinds.MEAN.search(bare(c.header))]
     return "sums up its neighbours" if column in means and len(means) < len(same) else ""
+
+
+def _of_dents(says: list[str]) -> list[str]:
+    """What headers say, d1 and d2 of a dent where no other speaks of one."""
+    pair = [_PAIR.fullmatch(kinds.named(text)) is not None for text in says]
+    if sum(pair) != 2 or any(kind and kind.name == DENTS[0] for kind in map(kind_of, says)):
+        return says
+    return [f"dent {text}" if one else text for text, one in zip(says, pair, strict=True)]
+
+
+def _check_angle(says: str, header: str, source: str) -> None:
+    """Refuse an angle that is none from the flat."""
+    kind = kind_of(says)
+    if kind and kind.name in ("angle_deg", REBOUND_ANGLE) and has(FROM_NORMAL, bare(says)):
+        raise InputError(
+            "an angle from the normal", source=source, key=header,
+            allowed="that between velocity and flat, or axis and flat: 90 for a normal impact",
+        )  # fmt: skip
 
 
 def given_columns(columns: Sequence[str]) -> dict[str, str]:

@@ -32,9 +32,14 @@ SUMMARY = re.compile(
 """What says that a row sums up others."""
 SUMS = re.compile(_ENDS.format(f"({words.MEANS}|{letters(words.SPREADS)})"))
 """The same of what should name a trial."""
-MEAN = re.compile(_ENDS.format(f"({words.MEANS})"))
+MEAN = re.compile(_ENDS.format(f"({words.MEANS})") + f"|{words.DERIVED}")
+LEAST, END = (
+    re.compile(_ENDS.format(f"({letters(end)})"))
+    for end in (words.LEAST, f"{words.LEAST}|{words.MOST}")
+)
 _WIDE = _ENDS.format(f"({letters(words.SPREADS)}|{letters(words.ERRORS)})")
-_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?", re.IGNORECASE)
+_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?|(?<=[)\]] )[su]$|(?<=\w )[su](?= [\[(])",
+                     re.IGNORECASE)  # fmt: skip
 _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
 _PLAIN = (CONDITIONS.keys() | MEASURED.keys()) - {"striker"}
@@ -49,7 +54,13 @@ def kind_of(header: str) -> SheetKind | None:
     header = _FORMULA.sub("", header)
     text = named(header)
     found = next((kind for kind in KINDS if kind.is_said(text)), None) if text else None
-    if found is None or (found.quantity != "text" and words.has(words.RANGE, text)):
+    if found is None or found.quantity == "text":
+        return found
+    if (
+        words.has(words.RANGE, text)
+        or words.has(words.THEORY, bare(header))
+        or "²" in without_unit(header)
+    ):
         return None
     # E (J) is an energy, E (GPa) a modulus, T (ms) no temperature
     unit = said_unit(header).strip("-%1") if len(text) == 1 else ""
@@ -82,7 +93,8 @@ def named(header: str) -> str:
     back = words.has(words.REBOUND, text) and quantity_of(unit)
     if back == "speed":
         return f"{text} speed"
-    return f"{text} height" if back == "length" or (text == "drop" and unit) else text
+    height = back == "length" and not words.has(words.HEIGHT, text)
+    return f"{text} height" if height or (text == "drop" and unit) else text
 
 
 def without_unit(header: str) -> str:
@@ -124,7 +136,7 @@ def nearest(header: str) -> str:
     best = max(
         likeness, key=lambda kind: (likeness[kind], kind.name in words.REBOUNDS), default=None
     )
-    if best is None or not likeness[best]:
+    if best is None or not likeness[best] or words.has(words.THEORY, bare(header)):
         return ""
     unit = "" if quantity or best.quantity == "number" else " UNIT"
     return f"{best.said}? --column {f'{without_unit(header).strip()}={best.said}{unit}'!r}"

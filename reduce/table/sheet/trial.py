@@ -168,5 +168,6 @@ def became(
     alike = sum(c.kind == column.kind and not c.spread for c in columns)
     if alike > 1 and column.kind.quantity != "text" and not column.spread:
         told += f", one of {alike} readings of a trial"
+    told += ", without its sign" * (column.sign < 0.0)
     of = "standard deviation of " if column.spread else ""
     return f"{of}{told} ({counted(column.taken, 'cell')})"

@@ -25,31 +25,38 @@ def bare(text: str) -> str:
     return letters(text).lower()
 
 
-_STROKES = str.maketrans("łŁ", "lL")
+_STROKES = str.maketrans(
+    "łŁ編號彈壓徑註備試樣測質衝擊鋼時間觸復係數溫驗記錄說標準誤員釋轉寬長載負",
+    "lL编号弹压径注备试样测质冲击钢时间触复系数温验记录说标准误员释转宽长载负",
+)
+"""Strokes that are no accents; signs as Taiwan and Japan write them as in the mainland."""
 
 HEIGHT = r"height|hoe?he|hauteur|altezza|altura|wysokosc|\b(h|ht|haut|alt|quota|wys)\b|高"
 DROPS = (
     r"drop|fall|release|chute|lacher|caduta|lancio|caida|lanzam|queda|lancam|abwurf|spad|zrzut|upad|"
-    r"upuszcz|initial|anfang|inizial|inicial|poczatk|落|跌|初始"
+    r"upuszcz|initial|anfang|start|ausgangs|inizial|inicial|poczatk|落|跌|初始|释放"
 )
 """Words of a drop height."""
 REBOUND = (
-    r"rebound|bounce|return|rue?ck(prall|sprung|kehr)|abprall|sprunghoe?he|rebond|remontee|retour|"
+    r"rebound|bounce|return|rue?ck(prall|sprung|kehr)|abprall|(sprung|steig)hoe?he|rebond|remontee|"
+    r"retour|risalita|弹起|跳ね上|"
     r"rimbalz|ritorno|rebote|retorno|ressalt|repiqu|ricochet|odbici|\bodb\b|odskok|powrot|回弹|反弹|跳ね?返|"
     r"はね返|反発"
 )
 SPEED = r"speed|\bvel(oc|\b)|geschw|\bvit(esse|\b)|predk|速度|速さ"
 _AFTER = (
     rf"{REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues|\bapos\b|\bpo\b|后|後|"
-    r"salida|sortie|uscita|saida|出射"
+    r"\bpost(\b|impa|coll)|outgoing|outbound|separation|ausfall|salida|sortie|uscita|saida|出射"
 )
 _BEFORE = (
     r"impact|approach|(auf|an)prall|auftreff|stoss|choc|choque|urto|impatto|uderz|zderz|before|"
-    r"incid|entrada|entree|ingresso|\bvor\b|avant|prima|antes|przed|冲击|碰撞|撞击|入射|衝突|衝撃"
+    r"incid|incoming|inbound|einschlag|einfall|entrada|entree|ingresso|\bvor\b|avant|prima|antes|"
+    r"przed|冲击|碰撞|碰前|撞击|入射|衝突|衝撃"
 )
 _DENT = (
     r"\bdent|dimple|crater|indent(?!er|eur|ador|atore)|imprint|impress|abdruck|eindruck|krater|delle|"
-    r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|压痕|坑|圧痕|くぼみ|窪み|へこみ"
+    r"empreint|impront|huella|mella|mossa|odcisk|wgniec|wglebieni|\bpit\b|压痕|凹痕|坑|圧痕|くぼみ|"
+    r"窪み|へこみ"
 )
 CONTACT_TIME = r"\bt_?[Kk]\b"
 """By its symbol as it is written: T_K is a temperature."""
@@ -62,7 +69,7 @@ NO_BALL = (
     r"plaque|epais|tole|piastra|lastra|spess|placa|chapa|espes|plyt|grub|板|厚"
 )
 """Of lengths and masses in a line above that are not a ball's diameter or mass."""
-_DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|\bsr\b|直径|(?<!半)径"
+DIAMETER = r"diam|\bdia\b|durchm|ø|⌀|srednic|\bsr\b|直径|(?<!半)径"
 _WIDTH = r"wid|breit|largeur|largh|ancho|largura|szerok|宽|幅"
 _LENGTH = r"length|laenge|lange|longueur|lunghezza|longitud|comprimento|dlugosc|长|長さ"
 _DEPTH = r"depth|tief|profond|profund|\bprof\b|glebok|深"
@@ -75,6 +82,10 @@ _FORCE = r"force|kraft|forza|fuerza|forca|\bsila|(?<![应応圧压])力|荷重"
 _SWING = r"auslenk|ausschlag|deflec|swing|pend[eou]l|lacher|release|oscil|wychyl|wahad|摆|振"
 """Of the angle to which a pendulum is drawn."""
 _ANGLE = r"angle|winkel|angolo|angulo|\bkat\b|角(?!速)"
+_HIGH = "(height|hoe?he|hauteur|altezza|altura|wysokosc)"
+_EARLY = "before|vor(her)?|avant|prima|antes|przed"
+_BACK = "(out|reb(ound)?|r|ab|rue?ck|nach|post|')"
+_LATE = "after|nach(her)?|apres|dopo|despues|apos|po"
 _SPIN = r"\bspin\b|\bgiro\b|drall|drehzahl|rotation|rotacion|rotazion|obrot|转速|自旋|回転"
 
 MEANS = (
@@ -90,19 +101,26 @@ ERRORS = (
     r"sem|sigma|σ|error|unc|inc|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre|"
     r"incerteza|niepewnosc|不确定度|误差|不確かさ|誤差"
 )
-EXTREMES = (
-    r"minim\w*|maxim\w*|min|max|sum|total|summe|suma|somme|最大[值値]?|最小[值値]?|合计|合計|ø|n ?="
-)
+LEAST, MOST = r"minim\w*|min|最小[値值]?", r"maxim\w*|max|最大[値值]?"
+EXTREMES = rf"{LEAST}|{MOST}|sum|total|summe|suma|somme|合计|合計|ø|n ?="
 LATER = (
     r"\b([2-9](nd|rd|th|eme|[eoa]|\.)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
     r"segund[oa]|tercer\w*|drugi\w*|trzeci\w*)\b|第[二三四2-4]"
 )
 FROM_NORMAL = (
     r"(from|to)( the)? (normal|vertical)|\blot\b|senkrecht|incidence|einfall|incidenza|incidencia|"
-    r"padania|入射角"
+    r"padania|入射角|inclin|nachyl|(plate|target) angle|plattenwinkel|倾|傾"
 )
+"""Of an angle: where the fall is upright, the plate's own is one."""
 ALONG = r"tangent|tangenc|horizont|styczn|切向|接線|水平"
-RANGE = r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd|zakres)\b"
+RANGE = r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd|zakres)\b|\w{4} (n|anzahl|count)$"
+THEORY = (
+    r"theor|teor|predict|vorherge|s[iy]mul|expected|\bfe[ma]\b|hertz|erwart|"
+    "理论|仿真|模拟|预测"
+)
+"""Of numbers that nobody measured."""
+DERIVED = r"calc|berechn|comput|oblicz|wylicz|计算|計算"
+CORRECTED = r"corr|korr|korygow|补正|補正|修正"
 ROD = r"\b(rod|stab|stange|barre|tige|barra|asta|varilla|haste|pret)\b|棒"
 """Of a striker that is no ball."""
 
@@ -110,6 +128,8 @@ REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
 REBOUND_ANGLE = "rebound_angle"
 BODY = BALL_DIAMETER, BALL_MASS = "ball_diameter", "ball_mass"
 APPROACHES = ("drop_height_m", "impact_speed_m_s", LOAD)
+SIGNED = (*APPROACHES[1:], REBOUND_SPEED, "peak_force_N", "restitution")
+"""What some write with the sign of an axis."""
 DENTS = ("dent_diameter_m", "permanent_depth_m", "scar_width_m", "scar_length_m")
 """Of one mark several readings are one."""
 
@@ -169,15 +189,15 @@ KINDS = (
         (r"\bnot(e|es|a|as|iz\w*)\b|remark|comment|coment|\bbem(erk|\b)|kommentar|komentarz|"
          r"\banm(erk|\b)|remarque|osservaz|commento|observa[ct]|\bobs\b|uwag|记录$|备注|说明|備考|コメント|メモ",)),
     SheetKind("person", "text",
-        (r"operator|observer|experimenter|student|te[ck]hni[ck]|tecnic|"
+        (r"operator|observer|experimente?[ar]|\btester\b|student|te[ck]hni[ck]|tecnic|"
          r"(measured|tested|done) by|prue?fer|bediener|bearbeiter|operateur|operatrice|operatore|"
          r"operari|operador|wykonal|badajac|"
          r"操作[员者]|试验员|测试人|測定者|担当|試験者",)),
     SheetKind("ball", "text",
         (r"^(ball|striker|indenter|projectile|kugel|bille|bola|esfera|sfera|kul[ak]a?|钢球|鋼球|球)"
-         r"( (type|material|no|nr|id))?\.?$",)),
+         r"([ -]?(type|material|no|nr|id|nummer|number))?\.?$|n[or°]?\.? (bille|kul[ik]i)",)),
     SheetKind("spot", "text",
-        (r"^((impact )?spot|(mess|treff|aufschlag)stelle|point d impact|punto d[i e]* ?impacto?|"
+        (r"^((impact )?spot|(mess|treff|aufschlag)?stelle|point d impact|punto d[i e]* ?impacto?|"
          r"ponto de impacto)( ?(no|nr|n))?\.?$",)),
     SheetKind("temperature_K", "temperature", (r"temperatur|\btemp\b|温度|室温",), r"^t$"),
     SheetKind(REBOUND_ANGLE, "angle", (_ANGLE, _AFTER),
@@ -189,36 +209,39 @@ KINDS = (
         r"^e ?n? ?\d*$|^cor ?\d*$"),
     SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
     SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
-        never="drop height|fallhoe?he"),
-    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), "^v ?(out|reb|r|ab|rue?ck)$",
+        rf"^h ?{_BACK}$|^{_HIGH} ({_LATE})\b", "drop height|fallhoe?he"),
+    SheetKind(REBOUND_SPEED, "speed", (_AFTER, SPEED), rf"^v ?{_BACK}$",
         rf"{ALONG}|before|\bvor\b|avant|prima|antes|przed|前"),
     SheetKind("drop_height_m", "length", (DROPS, HEIGHT),
-        "^(h ?0?|(height|hoe?he|hauteur|altezza|altura|wysokosc|高[度さ])( h)?)$"),
+        rf"^(h ?0?|h ?drop|({_HIGH}|高[度さ])( h)?)$|^{_HIGH} ({_EARLY})\b|^dropped|"
+        "fall(weg|strecke)"),
     SheetKind("impact_speed_m_s", "speed", (_BEFORE, SPEED),
-        "^(v( ?n)?|v ?(in?|imp|auf|an)|speed|velocity|geschwindigkeit|vitesse|velocita|velocidade?|"
-        r"predkosc|速度)( normal\w*)?$", ALONG),
-    SheetKind("dent_diameter_m", "length", (_DENT, rf"{_DIAMETER}|dm\b|{_WIDTH}|\bd ?\d?$")),
+        "^(v( ?n)?|v ?(in?|imp(act)?|auf|an|vor|pre)|speed|velocity|geschwindigkeit|vitesse|"
+        r"velocita|velocidade?|predkosc|速度)( normal\w*)?$", ALONG),
+    SheetKind("dent_diameter_m", "length",
+        (_DENT, rf"{DIAMETER}|dm\b|{_WIDTH}|\bd ?[\dxy]?$|^d\b")),
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
     # the largest depth under load is not what stays
     SheetKind("permanent_depth_m", "length", (f"{_DENT}|residu|permanent|bleibend", _DEPTH),
-        "^h ?bl$|eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
+        "^h ?bl$|^(depth|tiefe)$|eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
         rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
     SheetKind("contact_time_s", "time", (_BLOW, _TIME),
         r"duree|durata|duracion|duracao|^t ?(c$|[ck]ont)",
-        rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}"),
+        rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}|{DROPS}|"
+        r"\b(vol|volo|voo)\b|vuelo|essai|ensa[iy]o|\bprova\b|\btest|versuch|prue?f"),
     SheetKind("peak_force_N", "force", (_MOST, _FORCE), rf"^f ?({_MOST})"),
     SheetKind(LOAD, "force",
         (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷)(?![a-z])|荷重|"
          "(test|applied) (force|load)|force appliquee|fuerza aplicada|forza applicata|"
          "forca aplicada|prue?f(kraft|last)|试验力|試験力",)),
-    SheetKind(BALL_DIAMETER, "length", (BALL, _DIAMETER)),
+    SheetKind(BALL_DIAMETER, "length", (BALL, DIAMETER)),
     SheetKind(BALL_MASS, "mass", (BALL, _MASS), "^(mass[ae]?|masa|质量|質量)$"),
     SheetKind("trial", "text",
         (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"
-         r"sample|specimen|drop no|essai|mesure|eprouvette|prova|misura|campione|ensayo|medida|"
-         r"probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|^drop$|^n°|"
-         "编号|序号|番号|试样|試料|試番|試験 ?no",)),
+         r"sample|specimen|drop (no|number)|essai|mesure|eprouvette|prova|misura|campione|ensayo|"
+         r"medida|probeta|ensaio|medicao|amostra|proba|probka|pomiar|lp|lfd|vers)\b|"
+         r"^drop( ?#)?$|^n°|编号|序号|番号|试样|試料|試番|試験 ?no",)),
     *map(plain_kind, (
         "approach_tangential_m_s", "approach_spin_rad_s", "tangential_rebound_m_s",
         "friction_impulse_ratio", "sliding_length_m", "scar_excess_m", "press_depth_m",

@@ -96,6 +96,7 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(folder, text, told)
     [
         ("[rig]\nspeeds_m_s = [3, 0.4]", "rig.speeds_m_s"),
         ("[rig]\nspeed = 1", "rig.speed"),
+        ("[rig]\nangles_deg = [30, 120]", "rig.angles_deg.*two increasing angles up to 90"),
         ('[rig]\nreads = ["depth"]', "'depth' is none of restitution"),
         ("[rig.minutes]\nstrike = -1", "rig.minutes.strike"),
         ("[rig.minutes]\nstrikes = 1", "rig.minutes.strikes"),

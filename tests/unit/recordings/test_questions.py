@@ -46,6 +46,11 @@ def test_rows_that_say_the_same_are_asked_about(asked):
             "target: no material of the table is called 'hard steel'; assumed: Sy_Pa",
         ),
         ("a,90,1,0.55,1e-2", {}, "permanent_depth_m 0.01 of a is above the tip's radius"),
+        (
+            "a,90,1,0.55,1e-5",
+            {"contact_time_s": ("0.05",), "noise": f"{USUAL['noise']}contact_time_s = 1e-3\n"},
+            "contact_time_s 0.05 of a is above the time of 5 radii, ",
+        ),
     ],
 )
 def test_a_number_in_another_unit_and_one_without_use_are_told(asked, row, stated, words):

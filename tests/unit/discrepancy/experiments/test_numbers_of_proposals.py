@@ -51,12 +51,16 @@ def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
     assert sorted(set(seen) - {40.0, 80.0}) == [45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0]
 
 
-@pytest.mark.parametrize(("heights", "angle"), [(True, 90.0), (True, 45.0), (False, 90.0)])
-def test_who_drops_is_told_the_height(toy, heights, angle) -> None:
+@pytest.mark.parametrize(
+    ("heights", "angle", "speed", "told"),
+    [(True, 90.0, 2.0, "204"), (True, 90.0, 4.43, "1000"), (True, 45.0, 2.0, ""),
+     (False, 90.0, 2.0, "")],
+)  # fmt: skip
+def test_who_drops_is_told_the_height(toy, heights, angle, speed, told) -> None:
     """And not where it slants: a rod's speed is along the normal, a ball's along its path."""
-    one = toy.condition(2.0, angle=math.radians(angle))
+    one = toy.condition(speed, angle=math.radians(angle))
     one = replace(one, around=replace(one.around, from_height=heights))
-    fall = " (a fall of 204 mm)" if heights and angle == 90.0 else ""
+    fall = f" (a fall of {told} mm)" if told else ""
     assert _fall(one, {"gravity_m_s2": 9.81}) == fall
 
 

@@ -111,6 +111,7 @@ def test_the_command_makes_a_set(tmp_path, errs, prints):
         ("drop height (m);dent depth (um)\n1.250;55\n2.500;1080\n", [1.25, 2.5]),
         ("drop height (mm);e\n1,087;0,5\n0.797;0,4\n0,67;0,4\n", [0.001087, 0.000797, 0.00067]),
         ("Höhe (mm);Dellentiefe (µm)\n1.500;0.797\n200,0;0,67\n", [1.5, 0.2]),
+        ("drop height (mm);dent depth (um)\n500;55\n1,000;80\n", [0.5]),
         ("drop height (in),dent depth (um)\n1.969,55\n3.937,80\n", [0.0500126, 0.0999998]),
     ],
 )
@@ -295,6 +296,41 @@ OF_LABORATORIES = {
 }  # fmt: skip
 
 
+LAID_OUT = [
+    "Probe;Prüfer;Fallhöhe (cm);Rückprall (cm);Notiz\nA1;Kim;50;18;gut\nA2;Kim;60;21,6;gut\n",
+    "Probe;;Fallhöhe;Rückprallhöhe\nA1;1E-1;0,5 m;1,8E+2 mm\nA2;1E-1;0,6 m;2,16E+2 mm\n",
+    ";cm;mm\nNr.;Fallhöhe;Rückprallhöhe\n1;50;180\n2;60;216\n",
+    "Nr.;Fallhöhe;;Rückprallhöhe;Einheit\n1;50;cm;180;mm\n2;60;cm;216;mm\n",
+    "| no | drop (cm) | rebound (cm) |\n|---|---:|---|\n| 1 | 50 | 18 |\n| 2 | 60 | 21.6 |\n",
+    "Lab 3, steel\n\nno  drop height (cm)  rebound height (mm)  note\n"
+    "--  ----------------  -------------------  ----\n"
+    "1   50                180                  left edge\n2   60                216\n",
+    "v_in (m/s),v_out (m/s),h (m)\n-3.1321,1.8792,0.5\n-3.4310,2.0586,0.6\nmean,1.97,\n",
+    "Fallhöhe (cm);Rückprallhöhe (cm);;;\n;1;2;MW;s\n50;18,2;17,8;18;0,3\n60;21,5;21,7;21,6;0,1\n",
+    "drop (cm),rebound mean (cm),min rebound (cm),max rebound (cm)\n50,18,16,19\n60,21.6,20,23",
+    "drop (cm),rebound (cm),rebound (FEM) (cm)\n50,18,25\n60,21.6,30\n",
+    "drop (cm),rebound (cm),e calculated,rebound SD (cm)\n50,18,.6,.1\n60,21.6,.6,.1\n",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("coding", ["utf-8", "utf-16", "mac_roman"])
+@pytest.mark.parametrize("text", LAID_OUT)
+def test_two_drops_are_read_however_they_are_laid_out(tmp_path, text, coding):
+    (tmp_path / "a.txt").write_bytes(text.encode(coding))
+    sheet = read_sheet(tmp_path / "a.txt")
+    assert heights(sheet) == [0.5, 0.6]
+    assert restitutions(sheet) == pytest.approx([0.6, 0.6], rel=1e-4)
+
+
+def test_two_diameters_of_one_round_are_a_dents(tmp_path):
+    sheet = read_text(tmp_path, "Nr;Fallhöhe [cm];d1 [mm];d2 [mm];HBW\n1;50;0,85;0,87;182\n")
+    assert each(sheet, "dent_diameter_m") == pytest.approx([8.6e-4])
+    assert columns(sheet)["HBW"] == "left out: not understood"
+    sheet = read_text(tmp_path, "Load (N);d1 (mm);d2 (mm);HBW\n-1000;0,62;0,64;180\n")
+    assert each(sheet, "dent_diameter_m") == pytest.approx([6.3e-4])
+    assert each(sheet, "load_N") == [1000.0]
+
+
 @pytest.mark.parametrize("lang", OF_LABORATORIES)
 def test_names_sub_names_and_short_words_of_laboratories(tmp_path, lang):
     text, second = OF_LABORATORIES[lang]
@@ -379,6 +415,11 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("drop height (cm),Stoßzahl (%)\n10,0.65\n", "'0.65': a part of 1, or of 100?"),
         ("drop height (cm),dent depth (um)\n10,-9\n", "'-9' is too little"),
         ("drop height (cm),e\n10,65\n", "'65' is too much"),
+        ("Plate angle (deg),v (m/s),e\n30,1,0.6\n", "an angle from the normal"),
+        ("drop height (cm),rebound (cm),rebound corrected (cm)\n50,18,17\n",
+         r"stands in 'rebound \(cm\)' already .*--column 'rebound corrected \(cm\)=note'"),
+        ("No.,1,2\nDrop height (cm),50,60\nRebound height (cm),18,21\n",
+         "headers stand in a column, not a row"),
         ("drop height (m);e\n1,0;0,6\n400,0;0,6\n",
          r"row 3, drop height \(m\): '400,0' is too much .* is it in m\?"),
         ("#,drop height (mm),rebound height (mm)\n1,100,0,44,1\n", "5 cells below 3 headers"),
@@ -646,7 +687,12 @@ def test_what_a_column_may_be_named_is_said_once_and_true(tmp_path):
         ("v_an / (m/s)", "impact_speed_m_s"), ("v_ab / (m/s)", "rebound_speed"),
         ("h_bl [µm]", "permanent_depth_m"), ("試験No.", "trial"), ("Anm.", "note"),
         ("e的标准差", "restitution"), ("Écart-type de e", "restitution"),
-        ("Auslenkwinkel [°]", None), ("Auftreffwinkel [°]", "angle_deg"),
+        ("Auslenkwinkel [°]", None), ("Auftreffwinkel [°]", "angle_deg"), ("e²", None),
+        ("Post-impact velocity (m/s)", "rebound_speed"), ("v_vor [m/s]", "impact_speed_m_s"),
+        ("Rebound height after drop (cm)", "rebound_height"), ("Starthöhe (cm)", "drop_height_m"),
+        ("Höhe nach Aufprall (cm)", "rebound_height"), ("反彈高度(cm)", "rebound_height"),
+        ("Durée de chute (s)", None), ("Duração do ensaio (s)", None), ("Kugel-Nr.", "ball"),
+        ("Rebound height predicted (cm)", None), ("Stoßzahl (Simulation)", None),
     ],
 )  # fmt: skip
 def test_symbols_and_short_words_say_what_they_are(header, name):
