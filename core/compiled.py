@@ -25,8 +25,8 @@ _MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
 SHIPPED = "compiled"
 """Folder of the package with compiled code that came with it: SHIPPED/DIGEST/ as the sources."""
-SHIPPED_FOR = {"NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": "+avx2,+fma"}
-"""What it is compiled for, as numba is told: processors since 2013."""
+COMPILED_FOR = {"NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": "+avx2,+fma"}
+"""What all is compiled for, as numba is told: processors since 2013, which then compute alike."""
 _COMPILES = re.compile(r"numba|njit|_kernel\b|@kernel\b")
 _RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
@@ -83,15 +83,15 @@ def keep_compiled_code() -> None:
         digest = source_digest(root)
         folder = cache_folder(f"compiled-{digest}")
         os.environ[_VARIABLE] = str(folder)
-        shipped = root / SHIPPED / digest
-        if shipped.is_dir() and "NUMBA_CPU_NAME" not in os.environ and runs_shipped():
-            os.environ.update(SHIPPED_FOR)
-            _take(shipped, root, folder)
+        if runs_compiled() and "NUMBA_CPU_NAME" not in os.environ:
+            os.environ.update(COMPILED_FOR)
+        if COMPILED_FOR.items() <= os.environ.items():
+            take(root / SHIPPED / digest, root, folder)
     compile_without_the_folders_settings()
 
 
-def runs_shipped() -> bool:
-    """Whether this machine can run what is compiled for `SHIPPED_FOR`."""
+def runs_compiled() -> bool:
+    """Whether this machine can run what is compiled for `COMPILED_FOR`."""
     if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
         return False
     with suppress(OSError):
@@ -99,14 +99,16 @@ def runs_shipped() -> bool:
     return False
 
 
-def _take(shipped: Path, root: Path, folder: Path) -> None:
-    for part in {path.parent for path in shipped.rglob("*.nbi")}:
-        place = folder / name_by_numba(root / part.relative_to(shipped))
-        if not place.exists():
-            with suppress(OSError), tempfile.TemporaryDirectory(dir=folder) as made:
-                for file in part.glob("*.nb?"):
-                    shutil.copyfile(file, Path(made) / file.name)
-                Path(made).rename(place)  # whole at once: another process may do the same
+def take(shipped: Path, root: Path, folder: Path) -> None:
+    """Copy compiled code of the package at `root` to where numba looks for it, if not there."""
+    with suppress(OSError):
+        for file in sorted(shipped.rglob("*.nb?")):  # an index, .nbi, after what it names
+            place = folder / name_by_numba(root / file.parent.relative_to(shipped)) / file.name
+            if not place.exists():
+                place.parent.mkdir(exist_ok=True)
+                draft = place.with_suffix(f".{os.getpid()}")  # another process may do the same
+                shutil.copyfile(file, draft)
+                draft.rename(place)
 
 
 def name_by_numba(source: Path) -> str:

@@ -20,17 +20,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from dentscope.core.compiled import (
+    COMPILED_FOR,
     SHIPPED,
-    SHIPPED_FOR,
+    cache_folder,
     name_by_numba,
-    runs_shipped,
+    runs_compiled,
     source_digest,
+    take,
 )
-from dentscope.studies.synthetic.clips import ClipTruth, render, write_video
-from dentscope.studies.synthetic.scans import ScanTruth, true_surface
-from dentscope.studies.synthetic.sounds import SoundTruth, record, write_wav
-from dentscope.studies.synthetic.tip import TipTruth, photograph
-from matplotlib.image import imsave
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "tools" / "requirements" / f"py3{sys.version_info.minor}.txt"
@@ -174,10 +171,10 @@ def with_compiled_code(environment: Path, archive: Path, folder: Path) -> Path:
     begun = time.monotonic()
 
     def compile_in(lane: Sequence[str]) -> None:
-        for command in lane if runs_shipped() else ():
+        for command in lane if runs_compiled() else ():
             subprocess.run(
                 [environment / "bin/dentscope", *command.split()], cwd=place, capture_output=True,
-                env=alone() | SHIPPED_FOR | {"NUMBA_CACHE_DIR": str(cache)}, check=False,
+                env=alone() | COMPILED_FOR | {"NUMBA_CACHE_DIR": str(cache)}, check=False,
             )  # fmt: skip
 
     with ThreadPoolExecutor(2) as lanes:
@@ -185,9 +182,11 @@ def with_compiled_code(environment: Path, archive: Path, folder: Path) -> Path:
     shutil.unpack_archive(archive, folder / "source", filter="data")
     (whole,) = (folder / "source").iterdir()
     package = package_in(environment)
-    into = whole / SHIPPED / source_digest(package)
+    digest = source_digest(package)
+    into = whole / SHIPPED / digest
     for part in (p for p in package.rglob("*") if (cache / name_by_numba(p)).is_dir()):
         shutil.copytree(cache / name_by_numba(part), into / part.relative_to(package))
+    take(into, ROOT, cache_folder(f"compiled-{digest}"))  # of this checkout too
     say(f"{len(list(into.rglob('*.nbc')))} functions compiled in {time.monotonic() - begun:.0f} s")
     return whole
 
@@ -244,6 +243,13 @@ def commands(environment: Path) -> set[str]:
 
 def write_recordings(folder: Path) -> None:
     """Render raw recordings to reduce: bounces heard and written down, a clip, a tip, a crater."""
+    # now that what they load is compiled
+    from dentscope.studies.synthetic.clips import ClipTruth, render, write_video
+    from dentscope.studies.synthetic.scans import ScanTruth, true_surface
+    from dentscope.studies.synthetic.sounds import SoundTruth, record, write_wav
+    from dentscope.studies.synthetic.tip import TipTruth, photograph
+    from matplotlib.image import imsave
+
     write_wav(record(SoundTruth()), folder / "ball.wav")
     shutil.copyfile(PRESSES, folder / "press.txt")
     rows = "\n".join(f"{h},{0.49 * h}" for h in (0.2, 0.4, 0.8))
@@ -273,7 +279,7 @@ def try_one(environment: Path, folder: Path, use: Use) -> bool:
     told = answer.stdout + answer.stderr
     fine = answer.returncode == use.code and use.says in told and "Traceback" not in told
     fine &= use.code != 2 or len(answer.stderr.splitlines()) == 1
-    fine &= "first use" not in told or not runs_shipped()  # compiled code came with the wheel
+    fine &= "first use" not in told or not runs_compiled()  # compiled code came with the wheel
     mark = "ok" if fine else f"WRONG (exit {answer.returncode})"
     say(f"{time.monotonic() - begun:6.1f} s  {mark:8} dentscope {use.command}")
     if not fine:
