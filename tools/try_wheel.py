@@ -182,11 +182,11 @@ def with_compiled_code(environment: Path, archive: Path, folder: Path) -> Path:
     shutil.unpack_archive(archive, folder / "source", filter="data")
     (whole,) = (folder / "source").iterdir()
     package = package_in(environment)
-    digest = source_digest(package)
-    into = whole / SHIPPED / digest
+    into = whole / SHIPPED / source_digest(package)
     for part in (p for p in package.rglob("*") if (cache / name_by_numba(p)).is_dir()):
         shutil.copytree(cache / name_by_numba(part), into / part.relative_to(package))
-    take(into, ROOT, cache_folder(f"compiled-{digest}"))  # of this checkout too
+    # of this checkout too, which has the workshop beside it
+    take(into, ROOT, cache_folder(f"compiled-{source_digest(ROOT)}"))
     say(f"{len(list(into.rglob('*.nbc')))} functions compiled in {time.monotonic() - begun:.0f} s")
     return whole
 
