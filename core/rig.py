@@ -377,6 +377,10 @@ class StrikerTable(BodyTable):
     def _size_of_a_rod(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
         if given is None and info.data.get("shape") == "rod":
             raise ValueError("this key is needed for a rod")
+        tip = info.data.get("tip_radius_m")
+        if given and tip and info.field_name == "radius_m" and info.data.get("shape") == "sphere":
+            if abs(given.value - tip.value) > 0.01 * tip.value + given.std + tip.std:
+                raise ValueError(f"a sphere's is that of its tip, {tip.value:g}, or left out")
         return given
 
     _within_the_tip = field_validator("tip_flat_radius_m")(_below("tip_radius_m"))

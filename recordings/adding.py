@@ -24,7 +24,7 @@ def add_trials(
     The rows have columns of trials.csv; those that the set has not had yet are added to it. Without
     a column `trial` they are named by their file and row. Where the set has an `order` and the
     table has none, the rows follow in theirs. They are a session of their own, the next `batch`,
-    unless they say of which they are. Every mistake of the rows is a line of one error, by file,
+    where they do not say of which they are. Every mistake of the rows is a line of one error, by file,
     row and column; nothing is written then.
     """
     read(folder)  # a lock would make the folders around a set that is not there
@@ -60,8 +60,11 @@ def add_trials(
 
 def _joined(old: TextTable, new: TextTable, *, session: float) -> str:
     columns = list(dict.fromkeys((*old.columns, *new.columns, "batch")))
-    cells: dict[str, Sequence[str]] = {"batch": [f"{session:g}"] * len(new.rows), **new.cells}
-    if "order" in old.columns and "order" not in new.columns:
+    # the head of trials.csv may have been copied: a column without an entry says nothing
+    cells: dict[str, Sequence[str]] = {k: x for k, x in new.cells.items() if any(x)}
+    batch = cells.get("batch", ("",) * len(new.rows))
+    cells["batch"] = [x or f"{session:g}" for x in batch]
+    if "order" in old.columns and "order" not in cells:
         last = max((float(x) for x in old.cells["order"] if x), default=0.0)
         cells["order"] = [f"{last + k:g}" for k in range(1, len(new.rows) + 1)]
     parts = [

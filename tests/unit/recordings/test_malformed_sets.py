@@ -75,6 +75,10 @@ CASES = {
     "Brinell's number": (
         toml("nu = 0.3", "nu = 0.3\nhardness_Pa = 120"), r"120 HBW or HV would be 1.17\d+e\+09",
     ),
+    "a sphere of two radii": (
+        toml('"rod"\ntip_radius_m = 0.01', '"sphere"\ntip_radius_m = 0.02'),
+        r"rod.radius_m: 0.01 .*a sphere's is that of its tip, 0.02",
+    ),
     "empty TOML": ({"toml": ""}, r"set\.toml: format: missing"),
     "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
     "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
