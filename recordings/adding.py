@@ -24,7 +24,7 @@ def add_trials(
     The rows have columns of trials.csv; those that the set has not had yet are added to it. Without
     a column `trial` they are named by their file and row. Where the set has an `order` and the
     table has none, the rows follow in theirs. They are a session of their own, the next `batch`,
-    where they do not say of which they are. Every mistake of the rows is a line of one error, by file,
+    unless they say of which they are. Every mistake of the rows is a line of one error, by file,
     row and column; nothing is written then.
     """
     read(folder)  # a lock would make the folders around a set that is not there

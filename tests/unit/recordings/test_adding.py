@@ -64,7 +64,8 @@ def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, errs, prints):
     before = (folder / "trials.csv").read_bytes()
     other = folder.parent / "other.csv"  # of another ball
     other.write_text("ball diameter (mm);drop height (cm);e\n40;30;0,7\n40;30;0,71\n")
-    assert "ball.tip_radius_m: 0.02 of the sheet" in errs("recordings", "add", folder, "--from", other)
+    unlike = errs("recordings", "add", folder, "--from", other)
+    assert "ball.tip_radius_m: 0.02 of the sheet" in unlike
     assert "'rows-B1' is in the set already" in errs("recordings", "add", folder, "--from", sheet)
     for words in (["--from", str(sheet), "--striker", "none"], [], ["a.csv", "--sheet", "b"]):
         assert run(["recordings", "add", str(folder), *words]) == 2
