@@ -19,8 +19,6 @@ _NITROGEN = 77.4
 
 # limit: way in radii at the speed of approach [-]: a soft ball stays for 2.5, a steel one 0.05
 _RADII = 5.0
-# limit: friction that is not asked back [-]: soft rubber
-_STICKY = 3.0
 # limit: highest fall that is not asked back [m]: a stairwell
 _STAIRWELL = 20.0
 
@@ -53,9 +51,6 @@ def _gravity(found: RecordingSet) -> Iterator[str]:
     g = found.setup.gravity_m_s2.value
     if math.isclose(g, 981.0, rel_tol=0.01):  # on the ground
         yield f"gravity_m_s2 {g:g}: is it in cm/s^2?"
-    mu = found.setup.friction.coefficient
-    if mu is not None and mu.value > _STICKY:
-        yield f"friction.coefficient {mu.value:g}: is it in per cent?"
 
 
 def _deep(found: RecordingSet) -> Iterator[str]:

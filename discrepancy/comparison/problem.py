@@ -274,9 +274,8 @@ def problem_of(
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)
-    # first: what cannot act is refused before anything is compiled or solved
-    stated = problem.scenes(np.zeros(problem.n_z))
-    problem = _with_assumed(problem, (*setup.assume, *assume), stated)
+    named = (*setup.assume, *assume)  # what cannot act is refused before anything is solved
+    problem = _with_assumed(problem, named, problem.scenes(np.zeros(problem.n_z)))
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))

@@ -64,8 +64,7 @@ def read_sheet(
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
     _fill_balls(rows[head.end :], kept)
-    units = {head.headers[k] or f"column {k + 1}" for k in _join_units(rows[head.end :], kept)}
-    told = [(name, "units of the column before" if name in units else why) for name, why in told]
+    _join_units(rows[head.end :], kept)
     if select:
         name, value = selection(select, source=source)
         place = _place(head, name, source, "select")
@@ -92,16 +91,14 @@ def _fill_balls(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> No
                 row[place] = last
 
 
-def _join_units(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> set[int]:
-    """Write a unit that stands in the next column, 50;cm, behind its number; return such places."""
-    taken, joined = {column.place for column in columns}, set[int]()
+def _join_units(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> None:
+    """Write a unit that stands in the next column, 50;cm, behind its number."""
+    taken = {column.place for column in columns}
     for place in (c.place for c in columns if c.unit is None and c.place + 1 not in taken):
         for row in rows:
             number, *unit = row[place : place + 2]
             if number and any(map(is_unit, unit)):
                 row[place] = type(number)(f"{number} {unit[0]}")
-                joined.add(place + 1)
-    return joined
 
 
 def read_balls(path: Path, columns: Sequence[str] = (), *, sheet: str = "") -> dict[str, Sheet]:

@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 
 from ....core.errors import InputError, InputErrors
-from ....core.rig import Quantity, StrikerTable
+from ....core.rig import StrikerTable
 from ....recordings.columns import CONDITIONS, MEASURED
 from ....recordings.rules import RULES as OWN
 from ....recordings.template import Shape
@@ -44,8 +44,6 @@ _CLAUSE = re.compile(r"[^,;\d]*")
 _BALLS = [kind for kind in words.KINDS if kind.name in BODY]
 # limit: ratio of what is said of one ball's diameter or mass [-]; weighed again, rounded
 _ONE_BALL = 1.02
-# limit: how far a sheet's ball is off that of a set [-]: nominal, and weighed
-_THIS_BALL = 0.05
 _VARIED = ("temperature_K", "angle_deg", words.REBOUND_ANGLE)
 
 
@@ -93,13 +91,10 @@ class Sheet:
     def refuse_another(self, body: StrikerTable, source: str, *, key: str) -> None:
         """Refuse rows of a ball that is not this body, by its size or mass beyond their errors."""
         for name, said in self.striker.items():
-            stated: Quantity = getattr(body, name)
-            room = 3.0 * math.hypot(stated.std, np.nan_to_num(said.std))
-            if abs(said.value - stated.value) > room + _THIS_BALL * stated.value:
-                raise InputError(
-                    f"{said.value:g} of the sheet", source=source, key=f"{key}.{name}",
-                    allowed=f"{stated.value:g} as in set.toml, or a striker of its own",
-                )  # fmt: skip
+            stated = getattr(body, name)
+            if abs(said.value - stated.value) > 3.0 * stated.std + (_ONE_BALL - 1.0) * stated.value:
+                raise InputError(f"{said.value:g} of the sheet", source=source, key=f"{key}.{name}",
+                                 allowed=f"{stated.value:g}, or a striker of its own")  # fmt: skip
 
     def reduced(self, path: Path) -> Reduced:
         """Return it as what every reduction hands on."""

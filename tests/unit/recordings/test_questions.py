@@ -45,11 +45,6 @@ def test_rows_that_say_the_same_are_asked_about(asked):
             {"target": 'material = "hard steel"\n'},
             "target: no material of the table is called 'hard steel'; assumed: Sy_Pa",
         ),
-        (
-            "a,90,1,0.55,1e-5",
-            {"head": "[friction]\ncoefficient = 15\n"},
-            "friction.coefficient 15: is it in per cent?",
-        ),
         ("a,90,1,0.55,1e-2", {}, "permanent_depth_m 0.01 of a is above the tip's radius"),
         (
             "a,90,1,0.55,1e-5",
