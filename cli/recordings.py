@@ -187,12 +187,13 @@ def _rows_of(
     from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_sheet
 
-    strikers = sorted(read(folder).setup.strikers)
-    one_of(striker or (strikers[0] if len(strikers) == 1 else ""), strikers, key="--striker")
+    strikers = read(folder).setup.strikers
+    striker = striker or ("".join(strikers) if len(strikers) == 1 else "")
+    one_of(striker, sorted(strikers), key="--striker")
     found = read_sheet(sheet, columns, sheet=of_book)
+    found.refuse_another(strikers[striker], str(sheet), key=f"{folder}: strikers.{striker}")
     told = {"shape": found.shape, "column": "; ".join(columns)}
-    store(found.reduced(sheet), place, Row(striker=striker or strikers[0]), kind="sheet",
-          options=told)  # fmt: skip
+    store(found.reduced(sheet), place, Row(striker=striker), kind="sheet", options=told)
     _tell_columns(found)
     return place / "trials.csv"
 

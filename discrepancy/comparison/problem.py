@@ -274,10 +274,11 @@ def problem_of(
     )  # fmt: skip
     asked = setup.target.law == "table" or bool(recordings.flows)
     solve = law == "table" or (law is None and asked)
+    named = (*setup.assume, *assume)  # what cannot act is refused before anything is solved
+    problem = _with_assumed(problem, named, problem.scenes(np.zeros(problem.n_z)))
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))
-    problem = _with_assumed(problem, (*setup.assume, *assume), stated)
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
     again = derived_columns(recordings, readings)

@@ -189,10 +189,12 @@ def nowhere(v: Verdict) -> str:
         cause = "as stated the numbers do not fit, but moved they do"
     else:
         cause = "each place by itself misses too little"
+    none = "No single observable or condition is off by more than chance gives"
+    if nothing >= max(v.probabilities.values()):
+        return f"{none}; that nothing is missing leads with a probability of {told} only."
     return (
-        "No single observable or condition is off by more than chance gives, and yet nothing is "
-        f"missing with a probability of {told} only: {cause}, and the explanation that leads fits "
-        "all numbers together better than they can."
+        f"{none}, and yet nothing is missing with a probability of {told} only: {cause}, and the "
+        "explanation that leads fits all numbers together better than they can."
     )
 
 

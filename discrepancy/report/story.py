@@ -210,7 +210,7 @@ def _numbers(v: Verdict) -> ToldCells:
     struck = _struck(v)
     rows = tuple(
         (
-            number_name(n.name, struck=struck) + ("" if n.stated else " (assumed)"),
+            number_name(n.name, struck=struck) + ("" if n.stated else " (not stated)"),
             quantity(n.value, n.unit), quantity(q["value"], q["unit"]),
             interval(q["low"], q["high"], q["unit"]),
             f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",

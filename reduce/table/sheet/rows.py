@@ -12,6 +12,7 @@ from statistics import median
 import numpy as np
 
 from ....core.errors import InputError, InputErrors
+from ....core.rig import StrikerTable
 from ....recordings.columns import CONDITIONS, MEASURED
 from ....recordings.rules import RULES as OWN
 from ....recordings.template import Shape
@@ -86,6 +87,14 @@ class Sheet:
             for t in self.trials
         ]
         return ["trial", *names, "note"], rows
+
+    def refuse_another(self, body: StrikerTable, source: str, *, key: str) -> None:
+        """Refuse rows of a ball that is not this body, by its size or mass beyond their errors."""
+        for name, said in self.striker.items():
+            stated = getattr(body, name)
+            if abs(said.value - stated.value) > 3.0 * stated.std + (_ONE_BALL - 1.0) * stated.value:
+                raise InputError(f"{said.value:g} of the sheet", source=source, key=f"{key}.{name}",
+                                 allowed=f"{stated.value:g}, or a striker of its own")  # fmt: skip
 
     def reduced(self, path: Path) -> Reduced:
         """Return it as what every reduction hands on."""

@@ -107,6 +107,11 @@ def test_no_place_and_no_all_clear_says_why() -> None:
     told = nowhere(said("missing-physics", 0.02, nothing_seen, rest=0.8))
     assert "each place by itself misses too little" in told
     assert nowhere(said("adequate", 0.9, nothing_seen)).startswith("Nowhere beyond")
+    led = said("undetermined", 0.4, nothing_seen)
+    led.probabilities = {"baseline": 0.4, "roughness": 0.3, "outside-library": 0.3}
+    told = nowhere(led)
+    assert "nothing is missing leads with a probability of 40 % only" in told
+    assert "explanation that leads" not in told
 
 
 def test_a_place_under_an_all_clear_says_why() -> None:

@@ -42,6 +42,10 @@ def test_rows_go_below_those_that_are_there(folder, prints):
     assert all(x.startswith(y) for x, y in zip(after, before.splitlines(), strict=True))
     rows(folder, f"{HEAD.removeprefix('trial,')}\n{striker},90,2,0.7,0.01\n")
     assert add_trials(folder, path)[1] == ("rows-002",)  # as a sheet's without names
+    blank = folder.parent / "blank.csv"  # a head copied from trials.csv
+    blank.write_text(f"{HEAD},batch\nb,{striker},90,2,0.7,0.01,\nc,{striker},90,2,0.7,0.01,2\n")
+    add_trials(folder, blank)
+    assert read(folder).trials.sessions[-4:].tolist() == [2.0, 3.0, 4.0, 2.0]
     with pytest.raises(InputErrors, match="'rows-002' is in the set already"):
         add_trials(folder, path)
 
@@ -58,6 +62,10 @@ def test_a_laboratorys_sheet_is_added_in_its_own_words(folder, errs, prints):
     assert now.sessions[-2:].tolist() == [2.0, 2.0]
     assert now.spot[-2:] == ("A", "A")  # the second blow meets the crater of the first
     before = (folder / "trials.csv").read_bytes()
+    other = folder.parent / "other.csv"  # of another ball
+    other.write_text("ball diameter (mm);drop height (cm);e\n40;30;0,7\n40;30;0,71\n")
+    unlike = errs("recordings", "add", folder, "--from", other)
+    assert "ball.tip_radius_m: 0.02 of the sheet" in unlike
     assert "'rows-B1' is in the set already" in errs("recordings", "add", folder, "--from", sheet)
     for words in (["--from", str(sheet), "--striker", "none"], [], ["a.csv", "--sheet", "b"]):
         assert run(["recordings", "add", str(folder), *words]) == 2
