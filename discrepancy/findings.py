@@ -183,8 +183,10 @@ class Verdict:
 
         `explanation`: a key of `scores`, as "baseline"; left out: the best explanation.
 
-        Raises `InputError`: an explanation that was not fitted.
+        Raises `InputError`: an explanation that was not fitted; no draw.
         """
+        if not (isinstance(draws, int) and draws > 0):
+            raise InputError(repr(draws), key="draws", allowed="a whole number above 0")
         fits = {f.name: f for f in self.ranking.fits}
         name = explanation or self.best.name
         if name not in fits:

@@ -283,6 +283,9 @@ def test_what_is_read_again_scatters_about_what_was_read(verdict) -> None:
     assert off[0].max() > 3.0 * off[1].max()
     with pytest.raises(InputError, match=r"'magic' .*baseline"):
         verdict.samples(explanation="magic")
+    for draws in (0, -1, 2.5, "x"):
+        with pytest.raises(InputError, match=r"draws: .* \(allowed: a whole number above 0\)"):
+            verdict.samples(draws)
 
 
 def test_the_file_has_the_groups_and_dimensions_that_arviz_reads(verdict, tmp_path) -> None:
