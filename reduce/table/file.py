@@ -310,15 +310,16 @@ def _split(lines: Sequence[str], source: str, by: str, above: int = 0) -> Iterat
 def _in_columns(lines: Sequence[str]) -> Iterator[list[str]]:
     """The cells of lines that two blanks part at one place in each; titles are a cell of theirs."""
     words = [len(re.split(r" {2,}", line.strip())) for line in lines]
-    table = [line for line, n in zip(lines, words, strict=True) if 2 * n >= max(words) > 1]
+    most = max(words, default=0)
+    parted = [2 * n >= most > 1 for n in words]
+    table = [line for line, is_row in zip(lines, parted, strict=True) if is_row]
     held = "".join(
         "x" if any(c > " " for c in at) else " " for at in zip_longest(*table, fillvalue=" ")
     )
     starts = [found.start() for found in re.finditer(r"(?<![^ ] )(?<![^ ])x", held)]
-    for line in lines:
-        ends = [*starts[1:], None]
-        pairs = zip(starts, ends, strict=True) if line in table else [(0, None)]
-        yield [line[a:b] for a, b in pairs]
+    pairs = list(zip_longest(starts, starts[1:]))
+    for line, is_row in zip(lines, parted, strict=True):
+        yield [line[a:b] for a, b in (pairs if is_row else [(0, None)])]
 
 
 def _separator(lines: Sequence[str], source: str) -> str:

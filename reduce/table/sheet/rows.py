@@ -368,19 +368,20 @@ def _aside(row: Sequence[str], sheet: SheetRows, so_far: _SoFar) -> str:
         return " and those below: left out, headers of another table"
     if summary := _summary(row, sheet.columns):
         return f": left out, {summary!r} sums up other rows"
-    other = _other_name(row, sheet, [k for k, *_ in so_far.trials])
+    other = _other_name(row, sheet, so_far)
     return f": left out, {other!r} names no trial as those above are named" if other else ""
 
 
-def _other_name(row: Sequence[str], sheet: SheetRows, taken: Sequence[int]) -> str:
+def _other_name(row: Sequence[str], sheet: SheetRows, so_far: _SoFar) -> str:
     """The name of a row without a number, where all trials above have one: n, CV, śr."""
     first = next(c.place for c in sheet.columns if c.kind.quantity != "text")
     remarks = [c.place for c in sheet.columns if c.kind.name == "note"]
     for place in (k for k in range(first) if k not in remarks):
-        above, cell = [sheet.rows[k - 1][place] for k in taken], row[place]
-        numbered = [any(map(str.isdigit, name)) for name in above]
-        if len(above) > 1 and all(numbered) and cell and not any(map(str.isdigit, cell)):
-            return cell
+        cell = row[place]
+        if len(so_far.trials) > 1 and cell and not any(map(str.isdigit, cell)):
+            above = (sheet.rows[k - 1][place] for k, *_ in so_far.trials)
+            if all(any(map(str.isdigit, name)) for name in above):
+                return cell
     return ""
 
 
