@@ -1,6 +1,5 @@
 """What a solve tells: its errors, curves freed of the ripple of the rings, both bodies in space."""
 
-import dataclasses
 from dataclasses import replace
 from itertools import pairwise
 
@@ -84,9 +83,7 @@ def path(n=120, *, ratio=1.035, ripple=0.003, share=0.5):
             sphere=share, flat=1.0 - share, force_defect=0.0, place=place,
         )  # fmt: skip
         truth.append(clean)
-        readings.append(
-            dataclasses.replace(clean, force=force * (1 + tooth), radius=radius * (1 - tooth / 2))
-        )
+        readings.append(replace(clean, force=force * (1 + tooth), radius=radius * (1 - tooth / 2)))
     return readings, truth
 
 
