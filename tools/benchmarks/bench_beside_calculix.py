@@ -19,7 +19,8 @@ from dentscope import fem
 from dentscope.campaigns.cases.pairs import TABLE_2_1, table_2_1
 from dentscope.core import Pair
 from dentscope.core.processes.threads import in_one_thread
-from dentscope.studies.verification.calculix import Deck, measure, solve_deck, write_deck
+from dentscope.studies.verification.calculix.deck import Deck, write_deck
+from dentscope.studies.verification.calculix.output import measure, solve_deck
 
 DEEPEST, DEPTHS, TURNS = 0.1, 48, (0.03, 0.1)
 FINE = fem.Accuracy.production()

@@ -57,7 +57,6 @@ def run(bench: Bench) -> Result:
         )  # fmt: skip
     source = "Eqs. 1.16, 1.19 with C = 1.295 exp(0.736 nu) (Jackson and Green 2005)"
     return Result(
-        name="first-yield",
         title="First yield",
         about=(
             "One body yields, the other is rigid. Depth and load at which the first integration "

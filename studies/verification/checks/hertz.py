@@ -34,7 +34,6 @@ def run(bench: Bench) -> Result:
     rms = _pressure_error(snapshot, pair)
     stresses, rows = _axis_error(snapshot, pair)
     return Result(
-        name="hertz",
         title="Elastic contact: Hertz",
         about=(
             "Two elastic bodies of E = 200 GPa, nu = 0.3, production settings. F rises with a/R "

@@ -16,7 +16,8 @@ from ....core.arrays import Array
 from ....core.flow import Flow
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
-from ..calculix import Deck, Reference, load_reference, run_deck
+from ..calculix.deck import Deck
+from ..calculix.output import Reference, load_reference, run_deck
 from ..curves import inner, smoothed
 from ..result import Cell, Measurement, Result, Table
 
@@ -109,7 +110,6 @@ def run(bench: Bench) -> Result:
                         theirs.runs[0].cpu_s / cost, "", 5.0, None, "requirement")
         )  # fmt: skip
     return Result(
-        name="independent-code",
         title="An independent code: CalculiX",
         about=(
             "E = 200 GPa, nu = 0.3, weaker body 503 MPa, to Delta/R = 0.1: perfectly plastic "
