@@ -13,7 +13,6 @@ import numpy as np
 
 from ...campaigns import CaseRecord
 from ...campaigns.cases.pairs import pair_of, table_2_1
-from ...core.material import Pair
 from ...models import LAWS
 from ...models.base import unwarned
 from ...models.published.ghaednia import share_of_sphere
@@ -166,8 +165,8 @@ def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
     ):
         findings: Findings = {}
         for number in (0, *range(1, 6)):
-            record = stored.get(groups_of(_picture_pair(ratio) if number == 0 else
-                                          table_2_1(number, ratio)))  # fmt: skip
+            pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
+            record = stored.get(groups_of(table_2_1(number, ratio) if number else pair))
             if record is None or not record.unloadings:
                 continue
             last = record.unloadings[-1]
@@ -177,10 +176,6 @@ def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
             findings[name] = (part < 1e-3, f"{part:.2g} of the residual depth")
         out.append(Trend("2.2.1", claim, findings))
     return out
-
-
-def _picture_pair(ratio: float) -> Pair:
-    return pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
 
 
 def _fully_plastic(stored: Mapping[str, CaseRecord]) -> list[Trend]:

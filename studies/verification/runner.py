@@ -22,7 +22,10 @@ def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -
     results = []
     for check in checks:
         known = kept_result(check, folder=bench.folder)
-        if known is not None and not afresh and known.complete and _covers(known, bench.effort):
+        enough = known is not None and known.complete and (
+            bench.effort is Effort.QUICK or known.effort == Effort.PRODUCTION.value
+        )  # fmt: skip
+        if known is not None and enough and not afresh:
             bench.say(f"{check.name}: measured before")
             results.append(known)
             continue
@@ -79,10 +82,6 @@ def _measured(check: Check, bench: Bench) -> Result:
         state = {True: "met", False: "MISSED", None: ""}[m.met]
         bench.say(f"  {m.what}: {m.value:.4g} {m.unit} {m.mark} {state}".rstrip())
     return result
-
-
-def _covers(result: Result, effort: Effort) -> bool:
-    return result.effort == Effort.PRODUCTION.value or effort is Effort.QUICK
 
 
 def _file(name: str, folder: Path, effort: Effort) -> Path:
