@@ -22,10 +22,7 @@ def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -
     results = []
     for check in checks:
         known = kept_result(check, folder=bench.folder)
-        enough = known is not None and known.complete and (
-            bench.effort is Effort.QUICK or known.effort == Effort.PRODUCTION.value
-        )  # fmt: skip
-        if known is not None and enough and not afresh:
+        if known is not None and not afresh and known.complete and _covers(known, bench.effort):
             bench.say(f"{check.name}: measured before")
             results.append(known)
             continue
@@ -82,6 +79,10 @@ def _measured(check: Check, bench: Bench) -> Result:
         state = {True: "met", False: "MISSED", None: ""}[m.met]
         bench.say(f"  {m.what}: {m.value:.4g} {m.unit} {m.mark} {state}".rstrip())
     return result
+
+
+def _covers(result: Result, effort: Effort) -> bool:
+    return result.effort == Effort.PRODUCTION.value or effort is Effort.QUICK
 
 
 def _file(name: str, folder: Path, effort: Effort) -> Path:

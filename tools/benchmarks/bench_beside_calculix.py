@@ -34,7 +34,6 @@ def problem_of(pair: Pair, *, turns: tuple[float, ...]) -> fem.ContactProblem:
 
 @in_one_thread
 def ours(pair: Pair) -> dict[str, Any]:
-    """Solve a pair and say what it took."""
     problem, start = problem_of(pair, turns=TURNS), time.process_time()
     found = fem.solve(problem, accuracy=FINE)
     fem.discretisation_uncertainty(found.loading, problem, FINE)
@@ -47,7 +46,6 @@ def ours(pair: Pair) -> dict[str, Any]:
 
 
 def theirs(pair: Pair) -> dict[str, Any]:
-    """The same by CalculiX."""
     deck = Deck(problem_of(pair, turns=()), FINE)
     printed, spent = solve_deck(write_deck(deck))
     found = measure(deck, printed)
@@ -56,7 +54,6 @@ def theirs(pair: Pair) -> dict[str, Any]:
 
 
 def told(record: dict[str, Any]) -> str:
-    """Line of a pair."""
     text = f"{record['name']:10s} ours {record['ours_s']:6.1f} s"
     if "theirs_s" not in record:
         return text
@@ -70,7 +67,6 @@ def told(record: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Go on with the pairs, then print the median."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=Path)
     parser.add_argument("--theirs", type=int, default=15, help="pairs that CalculiX solves too")

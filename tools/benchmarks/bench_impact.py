@@ -90,7 +90,7 @@ def rates() -> None:
         )
     pair = thesis_scene("fitted", 90.0, modes=0).pair
     depth = pair.R * 10.0 ** np.random.default_rng(2).uniform(-6.0, -1.0, 1_000_000)
-    for name, law in laws.items():
+    for name, law in (laws | {"jackson-green": LAWS["jackson-green"]}).items():
         law.loading(pair, depth[:2])
         print(f"  a million forces, {name}: {best(lambda x=law: x.loading(pair, depth)):.4f} s")
     print("  (mark of the table 0.02 s)")

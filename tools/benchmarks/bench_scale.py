@@ -274,7 +274,6 @@ def _audited_one(folder: Path) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print every table, or one."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", choices=ONLY, default="")
