@@ -43,13 +43,19 @@ def _share_at_start(sweep: Sweep) -> Finding | None:
     return None if k is None else (abs(sweep.share[k] - 0.9) <= 0.05, f"{sweep.share[k]:.3f}")
 
 
-def _falls_faster_and_faster(sweep: Sweep) -> Finding | None:
-    k = sweep.between(0.6, 1.0)
-    if len(k) < 4 or sweep.at(1.0) is None:
-        return None
-    slope = np.diff(sweep.share[k]) / np.diff(sweep.ratio[k])
-    steeper = bool(np.all(np.diff(slope) < 0.0))
-    return bool(np.all(slope < 0.0)) and steeper, f"slope {slope[0]:.2f} to {slope[-1]:.2f}"
+def _falls(
+    low: float, high: float, *, fewest: int, faster: bool
+) -> Callable[[Sweep], Finding | None]:
+    def test(sweep: Sweep) -> Finding | None:
+        k = sweep.between(low, high)
+        if len(k) < fewest or (faster and sweep.at(high) is None):
+            return None
+        slope = np.diff(sweep.share[k]) / np.diff(sweep.ratio[k])
+        bends = -np.diff(slope) if faster else np.diff(slope)
+        holds = bool(np.all(slope < 0.0) and np.all(bends > 0.0))
+        return holds, f"slope {slope[0]:.2f} to {slope[-1]:.2f}"
+
+    return test
 
 
 def _falls_at_one(sweep: Sweep) -> Finding | None:
@@ -70,15 +76,6 @@ def _half_at_one(sweep: Sweep) -> Finding | None:
     first = sweep.records[k].curve
     start = float(first["sphere"][0] / (first["sphere"][0] + first["flat"][0]))
     return abs(start - 0.5) < 0.01, f"{start:.3f} before yield, {sweep.share[k]:.3f} at 0.04"
-
-
-def _falls_slower_and_slower(sweep: Sweep) -> Finding | None:
-    k = sweep.between(1.0, 1.7)
-    if len(k) < 5:
-        return None
-    slope = np.diff(sweep.share[k]) / np.diff(sweep.ratio[k])
-    flatter = bool(np.all(np.diff(slope) > 0.0))
-    return bool(np.all(slope < 0.0)) and flatter, f"slope {slope[0]:.2f} to {slope[-1]:.2f}"
 
 
 def _inner_extreme(sweep: Sweep, values: Array, low: float, high: float) -> tuple[float, float]:
@@ -177,7 +174,7 @@ CLAIMS: tuple[tuple[str, str, Callable[[Sweep], Finding | None]], ...] = (
     (
         "2.2.2",
         "delta_s* decreases from Sy* = 0.6 to 1, faster and faster",
-        _falls_faster_and_faster,
+        _falls(0.6, 1.0, fewest=4, faster=True),
     ),
     ("2.2.2", "delta_s* changes most rapidly at Sy* = 1", _falls_at_one),
     (
@@ -188,7 +185,7 @@ CLAIMS: tuple[tuple[str, str, Callable[[Sweep], Finding | None]], ...] = (
     (
         "2.2.2",
         "delta_s* decreases from Sy* = 1 to 1.7, slower and slower",
-        _falls_slower_and_slower,
+        _falls(1.0, 1.7, fewest=5, faster=False),
     ),
     (
         "2.2.2",

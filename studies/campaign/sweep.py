@@ -13,10 +13,7 @@ from ...campaigns.case import dimensionless_groups
 from ...campaigns.cases.pairs import RATIOS, TABLE_2_1, table_2_1
 from ...core.arrays import Array, Integers
 from ...core.material import Pair
-
-DEPTH = 0.04
-"""Delta/R of the thesis's figures over Sy*."""
-
+from ..thesis.figures.quantities import DEPTH
 
 Values = tuple[float, float, float, float]
 """delta_s*, a/R, p/Sy_min and F/(E' R^2)."""

@@ -13,12 +13,11 @@ import numpy as np
 
 from ...campaigns import CaseRecord
 from ...campaigns.cases.pairs import pair_of, table_2_1
-from ...core.material import Pair
 from ...models import LAWS
 from ...models.base import unwarned
-from ...models.published.ghaednia import share_of_sphere
+from ..thesis.figures.quantities import DEPTH, force, model_share, pressure, radius
 from .claims import CLAIMS, FEWEST, Finding
-from .sweep import DEPTH, Sweep, at_depth, by_pair, groups_of, sweeps
+from .sweep import Sweep, at_depth, by_pair, groups_of, sweeps
 
 Findings = dict[str, Finding]
 
@@ -133,8 +132,7 @@ def _other_laws(stored: Mapping[str, CaseRecord]) -> Trend:
         if values is None:
             break
         with unwarned():
-            force = float(LAWS[name].loading(pair, np.array([depth * pair.R]))[0])
-        off = force / (pair.E_reduced * pair.R**2) / values[3] - 1.0
+            off = float(force(LAWS[name], pair, np.array([depth]))[0]) / values[3] - 1.0
         findings[name] = (low <= off <= high, f"{off:+.0%}")
     claim = (
         "figure 2.20, at Delta/R = 0.05: Jackson and Green about 30 % low, Kogut and Komvopoulos "
@@ -144,16 +142,14 @@ def _other_laws(stored: Mapping[str, CaseRecord]) -> Trend:
 
 
 def _of_the_thesis(number: int, ratio: float, name: str) -> float:
-    pair, law = table_2_1(number, ratio), LAWS["ghaednia"]
+    pair = table_2_1(number, ratio)
     if name == "share":
-        return float(share_of_sphere(DEPTH, pair.E_reduced / pair.Sy_min, ratio, 1.0))
+        return model_share(pair)
     with unwarned():
-        D = np.array([DEPTH * pair.R])
-        if name == "radius":
-            return float(law.contact_radius(pair, D)[0] / pair.R)
-        if name == "pressure":
-            return float(law.hardness(pair, D)[0] / pair.Sy_min)
-        return float(law.loading(pair, D)[0] / (pair.E_reduced * pair.R**2))
+        return float(_QUANTITIES[name](LAWS["ghaednia"], pair, np.array([DEPTH]))[0])
+
+
+_QUANTITIES = {"radius": radius, "pressure": pressure, "force": force}
 
 
 def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
@@ -166,8 +162,8 @@ def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
     ):
         findings: Findings = {}
         for number in (0, *range(1, 6)):
-            record = stored.get(groups_of(_picture_pair(ratio) if number == 0 else
-                                          table_2_1(number, ratio)))  # fmt: skip
+            pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
+            record = stored.get(groups_of(table_2_1(number, ratio) if number else pair))
             if record is None or not record.unloadings:
                 continue
             last = record.unloadings[-1]
@@ -177,10 +173,6 @@ def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
             findings[name] = (part < 1e-3, f"{part:.2g} of the residual depth")
         out.append(Trend("2.2.1", claim, findings))
     return out
-
-
-def _picture_pair(ratio: float) -> Pair:
-    return pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
 
 
 def _fully_plastic(stored: Mapping[str, CaseRecord]) -> list[Trend]:

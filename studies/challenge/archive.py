@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 import zipfile
 from collections.abc import Mapping
@@ -56,7 +55,7 @@ def get(folder: Path, *, first: bool = False) -> dict[str, int]:
             )
     for line in (data / SUMS).read_text(encoding="utf-8").splitlines():
         digest, name = line.split()
-        if hashlib.sha256((data / name).read_bytes()).hexdigest() != digest:
+        if digest_of(data / name) != digest:
             raise InputError("not what was published", source=str(data / name), allowed=digest)
     folder_for_output(folder)
     (folder / SEALS).write_bytes((data / SEALS).read_bytes())

@@ -220,6 +220,3 @@ def bought_scores(
         each = np.array(gain) / np.mean(count)
         told.append(Row("nats a trial", *mean_with_interval(each, draws)))
     return told
-
-
-__all__ = ["BOUGHT", "ask", "bought_scores", "deal", "truths"]

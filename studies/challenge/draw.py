@@ -8,7 +8,6 @@ which its truth keeps: it salts the seal, and whoever has the truths can draw th
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import secrets
 import zipfile
@@ -22,6 +21,7 @@ from ...core.output import write_file
 from ..proof.generators.effects import EFFECTS, OUTSIDE
 from ..proof.generators.folder import write_set
 from ..proof.generators.truth import Truth, draw
+from ..proof.seal import digest_of
 from .archive import DATA, PARTS, SEALS, SUMS, TRUTHS, seal_truths
 
 SIXTY = [("null", "")] * 12 + [("pair", "")] * 4
@@ -106,7 +106,7 @@ def publish(work: Path, to: Path = DATA) -> None:
         _pack(to / f"{part}.zip", files)
     published = [*(f"{part}.zip" for part in PARTS), SEALS]
     published += [TRUTHS] * (to / TRUTHS).exists()
-    sums = [f"{hashlib.sha256((to / name).read_bytes()).hexdigest()}  {name}" for name in published]
+    sums = [f"{digest_of(to / name)}  {name}" for name in published]
     write_file(to / SUMS, "\n".join(sums) + "\n")
     secret = {name: record for name, record in truths.items() if name.startswith("sealed")}
     write_file(work / "sealed-truths.json", json.dumps(secret, indent=1) + "\n")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from pathlib import Path
 from typing import Annotated
@@ -84,10 +83,11 @@ def seal(
     """Fix what you did to sets of your own before anybody answers them."""
     from ..challenge.archive import SEALS
     from ..challenge.sealing import seal as fix
+    from ..proof.seal import digest_of
 
     kept = truths or folder.with_name(f"{folder.name}-truths.json")
     names = fix(folder, acts, kept)
-    digest = hashlib.sha256((folder / SEALS).read_bytes()).hexdigest()
+    digest = digest_of(folder / SEALS)
     typer.echo(f"{folder / SEALS}: {len(names)} sets, SHA-256 {digest}: publish it with them")
     typer.echo(f"{kept}: the truths: keep them until all answers are in")
 
@@ -109,6 +109,7 @@ def score(
     from ..challenge.answers import read_answers
     from ..challenge.archive import sets_of, truths_of
     from ..challenge.score import scores
+    from ..proof.seal import digest_of
 
     sets = sets_of(folder)
     said = read_answers(answers, sets)
@@ -116,8 +117,7 @@ def score(
     dealt = judge is not None or aside.is_dir()
     true = bought.truths(aside) if dealt else truths_of(folder, sets, truths)
     if not true:
-        digest = hashlib.sha256(answers.read_bytes()).hexdigest()
-        say(f"{answers}: {len(sets)} sets answered, SHA-256 {digest}")
+        say(f"{answers}: {len(sets)} sets answered, SHA-256 {digest_of(answers)}")
         say("their truths are sealed: keep the file, and score it with --truths once they are out")
         return
     found = scores(said, true)

@@ -189,7 +189,8 @@ def interventions(
     out: Annotated[Path, folder_option("Folder of the sets.")] = Path("build/interventions"),
 ) -> None:
     """Conceal known effects of real recordings, diagnose, and rewrite docs/interventions.md."""
-    from ..interventions.page import counted, write_page
+    from ...core.output import write_file
+    from ..interventions.page import PAGE, counted, page
     from ..interventions.plan import read_plan
     from ..interventions.scoring import ask, outcomes
 
@@ -197,7 +198,7 @@ def interventions(
     for told in ask(pairs, raw=raw, out=out):
         mark = {True: "right", False: "missed", None: "left out"}[told.right]
         typer.echo(f"{told.pair:<14} {told.side:<8} {mark:<9} {told.said}")
-    write_page(pairs, outcomes())
+    write_file(PAGE, page(pairs, outcomes()))
     typer.echo(counted(pairs, outcomes()))
 
 

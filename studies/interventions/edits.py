@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -47,7 +46,8 @@ def write_side(side: Side, made: Path, folder: Path) -> None:
 
 
 def _rows(side: Side, rows: Rows) -> Rows:
-    kept = [row for row in rows if _kept(row["trial"], side.rows)]
+    wanted = side.rows or ("*",)
+    kept = [row for row in rows if any(fnmatchcase(row["trial"], one) for one in wanted)]
     for pattern in side.rows:
         if not any(fnmatchcase(row["trial"], pattern) for row in kept):
             raise InputError(repr(pattern), key="rows", allowed="names of trials")
@@ -62,10 +62,6 @@ def _rows(side: Side, rows: Rows) -> Rows:
             _turn(row, side.turned_deg)
     gone = set(side.columns_left_out)
     return [{name: text for name, text in row.items() if name not in gone} for row in kept]
-
-
-def _kept(trial: str, patterns: Sequence[str]) -> bool:
-    return not patterns or any(fnmatchcase(trial, pattern) for pattern in patterns)
 
 
 def _turn(row: dict[str, str], turned_deg: float) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ...core.output import write_file
 from .plan import ROOT, Pair
 from .scoring import NAMING, points, right_with, said
 
@@ -34,16 +33,11 @@ _CONSTANT = ("undetermined", "adequate", "outside-library")
 _MARK = {True: "right", False: "missed"}
 
 
-def write_page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> None:
-    """Write the page.
+def page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the page as Markdown.
 
     `pairs`: the plan; `told`: what was said, by pair and side.
     """
-    write_file(PAGE, page(pairs, told))
-
-
-def page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the page as Markdown."""
     rows = [_row(pair, told.get(pair.name, {})) for pair in pairs]
     after = REMARKS.read_text(encoding="utf-8").strip() + "\n" if REMARKS.exists() else ""
     table = _TABLE + "\n".join(rows) + "\n"

@@ -142,21 +142,18 @@ def _asked(folder: Path, out: Path, limit_s: float) -> dict[str, Any]:
         shutil.move(place / "verdict.json", path)
     verdict = json.loads(path.read_text(encoding="utf-8"))
     audit = [found["message"] for found in verdict["audit"]]
+    wrong = [f"wrong-input:{one['key']}" for one in verdict.get("wrong_inputs", ())]
     return {
         "set": digest,
         "verdict": verdict["verdict"],
-        "mechanisms": [*verdict["mechanisms"], *_wrong(verdict)],
+        # and the numbers of the sheet that it takes for wrong, by the names of its explanations
+        "mechanisms": [*verdict["mechanisms"], *wrong],
         "alternatives": verdict["alternatives"],
         "audit": [line for line in audit if line.startswith("contradiction")],
         "probabilities": dict(
             sorted(verdict["probabilities"].items(), key=lambda item: -item[1])[:4]
         ),
     }
-
-
-def _wrong(verdict: Mapping[str, Any]) -> list[str]:
-    """Numbers of the sheet that a verdict takes for wrong, by the names of its explanations."""
-    return [f"wrong-input:{one['key']}" for one in verdict.get("wrong_inputs", ())]
 
 
 def said(told: Mapping[str, Any]) -> str:
@@ -166,9 +163,6 @@ def said(told: Mapping[str, Any]) -> str:
         reported = [told["mechanisms"], *told["alternatives"]]
         text = " or ".join("+".join(names) or "nothing" for names in reported)
     if told["audit"]:
-        text += "; audit: " + ", ".join(dict.fromkeys(_check(line) for line in told["audit"]))
+        checks = (line.split(": ")[1].split(" of ")[0] for line in told["audit"])
+        text += "; audit: " + ", ".join(dict.fromkeys(checks))
     return text
-
-
-def _check(line: str) -> str:
-    return line.split(": ")[1].split(" of ")[0]

@@ -57,24 +57,3 @@ def coverage_by_class(cases: Iterable[Case]) -> dict[str, tuple[int, int]]:
             hits, of = found.get(name, (0, 0))
             found[name] = (hits + hit, of + 1)
     return dict(sorted(found.items()))
-
-
-def calibration(cases: list[Case]) -> list[tuple[float, float, int, int]]:
-    """Stated probability of the best explanation against how often it was right, in bins.
-
-    Returned: (low, high, right, cases) of each bin with cases.
-    """
-    edges = [0.0, 0.5, 0.7, 0.9, 0.97, 1.0]
-    counts = [[0, 0] for _ in edges[1:]]
-    for case in cases:
-        stated = case.verdict.get("probabilities") or {}
-        if not stated or case.truth["kind"] in PLANTED:
-            continue
-        top = max(stated, key=lambda key: float(stated[key]))
-        kind = case.truth["kind"]
-        true = {"null": frozenset({"baseline"}), "outside": frozenset({"outside-library"})}
-        right = frozenset(top.split("+")) == true.get(kind, case.true)
-        place = int(np.searchsorted(edges[1:-1], float(stated[top]), side="right"))
-        counts[place][0] += right
-        counts[place][1] += 1
-    return [(edges[i], edges[i + 1], r, n) for i, (r, n) in enumerate(counts) if n]

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ...core.output import write_file
-from .calibrated import calibration, coverage_by_class, inclusion
+from .calibrated import coverage_by_class, inclusion
 from .case import Case, interval
-from .power import PICTURE, picture, power_lines, read_rows, shown
+from .power import PICTURE, Shown, picture, power_lines, shown
 from .ranks import AT_DATA, at_data_lines, rank_lines, read_ranks
 from .rivals import compare, rival_lines
 from .score import confusion, scores
@@ -94,8 +94,8 @@ def summary(
         "failed": sum(not c.verdict for c in cases),
         "cpu_s": round(sum(float(c.event["cpu_s"]) for c in cases) / max(len(cases), 1), 1),
         "scores": [asdict(s) for s in scores(cases)],
-        "confusion": confusion(cases), "calibration": calibration(cases),
-        "inclusion": inclusion(cases), "coverage": coverage_by_class(cases),
+        "confusion": confusion(cases), "inclusion": inclusion(cases),
+        "coverage": coverage_by_class(cases),
         "by_mechanism": _by_mechanism(cases),
         "power": shown(cases), "peers": compare(peers) if peers else {},
         "failures": [_told(c) for c in wrong],
@@ -137,7 +137,7 @@ def details(runs: list[dict[str, Any]]) -> str:
             f"| {name} | {n} | {seen} | {right} | {_text(size)} |"
             for name, (n, seen, right, size) in sorted(run["by_mechanism"].items())
         ]
-        lines += power_lines(read_rows(run.get("power", [])))
+        lines += power_lines([Shown(*row) for row in run.get("power", [])])
         lines += [*_inclusion_rows(run.get("inclusion", [])), ""]
     lines += rank_lines(read_ranks())
     lines += at_data_lines(read_ranks(AT_DATA))
@@ -150,7 +150,7 @@ def publish(runs: list[dict[str, Any]], docs: Path) -> None:
     write_file(docs / "proof-details.md", details(runs))
     power = (_shown(runs) or {}).get("power")
     if power:
-        picture(read_rows(power), docs / "pictures" / PICTURE)
+        picture([Shown(*row) for row in power], docs / "pictures" / PICTURE)
 
 
 def _shown(runs: list[dict[str, Any]]) -> dict[str, Any] | None:

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
@@ -63,10 +63,9 @@ def power_lines(rows: Sequence[Shown]) -> list[str]:
         "| size | sets | found, 95 % interval | rightly named, 95 % interval |",
         "| --- | --- | --- | --- |",
     ]  # fmt: skip
-    lines += [
-        f"| {_class(low, high)} | {n} | {_share(seen, n)} | {_share(right, n)} |"
-        for low, high, seen, right, n in by_size(rows)
-    ]
+    for low, high, seen, right, n in by_size(rows):
+        sizes = f"above {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
+        lines.append(f"| {sizes} | {n} | {_share(seen, n)} | {_share(right, n)} |")
     return lines
 
 
@@ -104,15 +103,6 @@ def picture(rows: Sequence[Shown], path: Path) -> Path:
         axis.xaxis.minorticks_off()
         axis.grid(alpha=0.3)
     return write_figure(made, path, dpi=110, metadata={"Software": None})
-
-
-def read_rows(kept: Iterable[Sequence[Any]]) -> list[Shown]:
-    """Rows as they lie in runs.json."""
-    return [Shown(*row) for row in kept]
-
-
-def _class(low: float, high: float) -> str:
-    return f"above {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
 
 
 def _share(hits: int, of: int) -> str:

@@ -28,7 +28,7 @@ from ...core.output import in_use
 from ...core.processes.children import die_with, keep_current_folder_out
 from .apart import answer
 from .generators.folder import write_set
-from .generators.truth import Truth, draw
+from .generators.truth import draw
 from .lists import LISTS, Entry, seed_of, shuffled
 from .seal import Ledger, digest_of, tree_hash
 
@@ -47,14 +47,9 @@ def verdicts_of(run: Path) -> int:
     return len(Ledger(run / "ledger.jsonl").of("verdict"))
 
 
-def draw_entry(tree: str, entry: Entry) -> Truth:
-    """The concealed case of one entry."""
-    return draw(seed_of(tree, entry), entry.kind, name=entry.effect)
-
-
 def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
     """Draw one case and conceal it; return the event that seals it."""
-    truth = draw_entry(tree, entry)
+    truth = draw(seed_of(tree, entry), entry.kind, name=entry.effect)
     return conceal(run, entry.name, truth.record() | {"tree": tree}, partial(write_set, truth))
 
 

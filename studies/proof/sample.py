@@ -33,7 +33,8 @@ def sample(
     names = list(EFFECTS if kind == "single" else OUTSIDE)
     for number in range(count):
         rng = np.random.default_rng([seed, number])
-        this = kind or _kind_of(name) or KINDS[number % len(KINDS)]
+        given = kind or ("single" if name in EFFECTS else "outside" if name in OUTSIDE else "")
+        this = given or KINDS[number % len(KINDS)]
         effect = name or (names[number % len(names)] if kind in ("single", "outside") else "")
         truth = draw(rng, this, name=effect)
         label = f"sample-{seed}-{number:03d}"
@@ -41,7 +42,3 @@ def sample(
         record = truth.record()
         (out / "truths" / f"{label}.json").write_text(json.dumps(record, indent=1) + "\n")
         yield label, record
-
-
-def _kind_of(name: str) -> str:
-    return "single" if name in EFFECTS else ("outside" if name in OUTSIDE else "")

@@ -132,10 +132,11 @@ def scores(cases: list[Case]) -> list[Score]:
         ),
         share("a name with worse held-out trials", [c for c in plain if c.named],
               lambda c: c.worse, most=0.0),
-        share("first place of the mismatch right, size above 10", located(seen),
-              lambda c: _placed(c), least=0.80),
+        share("first place of the mismatch right, size above 10", located(seen), _placed,
+              least=0.80),
         share("the same, where the truth shows it above 3 deviations",
-              [c for c in located(seen) if _shows(c) > STANDS_OUT], lambda c: _placed(c),
+              [c for c in located(seen)
+               if max(float(score) for *_, score in c.truth["places"]) > STANDS_OUT], _placed,
               least=0.80),
         share("next experiment can be done", [c for c in plain if next_of(c)], feasible,
               least=1.0),
@@ -215,11 +216,6 @@ NEARLY = 0.8
 STANDS_OUT = 3.0
 """True score of a place, in standard deviations of noise and of all that is unsure, from which a
 reader of the recordings could find it at all."""
-
-
-def _shows(case: Case) -> float:
-    """Largest true score of a place."""
-    return max(float(score) for _, _, score in case.truth["places"])
 
 
 def located(cases: Iterable[Case]) -> list[Case]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import json
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.output import write_file
 from ..third_world.draw import NULLS, PAIRS, Truth, draw
 from ..third_world.effects import EFFECTS, OUTSIDE
 from ..third_world.sheet import write
@@ -23,7 +25,7 @@ from .case import open_run
 from .rivals import read_lines
 from .run import ROOT, alone, conceal, diagnose, local_workers
 from .seal import Ledger, digest_of, tree_hash
-from .third_world_page import keep, kept
+from .third_world_page import FOUND, kept
 
 PLAN = ROOT / "data" / "proof" / "third-world-plan.md"
 """What is drawn and what counts, written before the run."""
@@ -111,7 +113,8 @@ def main() -> None:
         begun = Ledger(given.out / "ledger.jsonl").of("begin")[""]
         lines = read_lines(given.out)
         whole = {"plan": begun["plan"], "tree": begun["tree"], "total": len(entries())}
-        keep(kept(open_run(given.out), lines, **whole))
+        found = kept(open_run(given.out), lines, **whole)
+        write_file(FOUND, json.dumps(found, indent=1) + "\n")
         return
     for name, event in carry_on(given.out):
         state = "sealed" if event["verdict"] else f"no verdict: {event['message']}"

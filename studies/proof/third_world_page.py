@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ...core.output import write_file
 from .case import Case
 from .rivals import (
     BASELINE,
@@ -52,13 +51,14 @@ def kept(
     for line in sorted(lines, key=lambda x: str(x["set"])):
         truth = of[line["set"]].truth
         said = line["said"][DIAGNOSIS]
+        leading = sorted(said["odds"].items(), key=lambda item: -item[1])[:4]
         sets.append(
             {
                 "set": line["set"], "bench": truth["bench"], "truth": _true(truth),
                 "forms": [e["form"] for e in truth["effects"]],
                 "sizes": [round(float(s), 1) for s in truth["sizes"]],
                 "verdict": said["verdict"], "names": ["+".join(n) for n in said["names"]],
-                "odds": {k: round(p, 3) for k, p in _first(said["odds"])},
+                "odds": {k: round(p, 3) for k, p in leading},
                 "front": bool(mark_of(line, DIAGNOSIS).front),
                 "peer_front": bool(mark_of(line, best).front),
             }
@@ -72,15 +72,6 @@ def _true(truth: dict[str, Any]) -> str:
     names = [str(e["name"]) for e in truth["effects"]]
     joined = "+".join(names) or BASELINE
     return f"outside: {joined}" if truth["kind"] == "outside" else joined
-
-
-def _first(odds: dict[str, float], count: int = 4) -> list[tuple[str, float]]:
-    return sorted(odds.items(), key=lambda item: -item[1])[:count]
-
-
-def keep(found: dict[str, Any]) -> None:
-    """Write the file."""
-    write_file(FOUND, json.dumps(found, indent=1) + "\n")
 
 
 def third_world_lines(path: Path = FOUND) -> list[str]:

@@ -143,14 +143,8 @@ def random_rod(seed: int, **given: object) -> MocapTruth:
         restitution=random.uniform(0.3, 0.9),
         ratio=random.uniform(0.02, 0.2),
         contact_time=random.uniform(1e-4, 3e-3),
-        azimuth=random.uniform(-np.pi, np.pi),
-        touch=random.uniform(0.10, 0.14),
-        noise=random.uniform(5e-5, 2e-4),
-        missing=random.uniform(0.0, 0.06),
-        gap=_gap(random),
-        seed=seed,
     )
-    return replace(truth, **given)  # type: ignore[arg-type]
+    return _seen(truth, random, seed, given)
 
 
 def random_ball(seed: int, **given: object) -> MocapTruth:
@@ -170,19 +164,21 @@ def random_ball(seed: int, **given: object) -> MocapTruth:
         restitution=random.uniform(0.4, 0.95),
         ratio=random.uniform(0.05, 0.3),
         contact_time=random.uniform(1e-4, 1e-3),
-        azimuth=random.uniform(-np.pi, np.pi),
-        touch=random.uniform(0.10, 0.14),
-        noise=random.uniform(5e-5, 2e-4),
-        missing=random.uniform(0.0, 0.06),
-        gap=_gap(random),
-        seed=seed,
     )
-    return replace(truth, **given)  # type: ignore[arg-type]
+    return _seen(truth, random, seed, given)
 
 
-def _gap(random: np.random.Generator) -> tuple[int, int]:
+def _seen(
+    truth: MocapTruth, random: np.random.Generator, seed: int, given: dict[str, object]
+) -> MocapTruth:
+    """Draw how a motion is seen; `given` goes first."""
+    seen = {
+        "azimuth": random.uniform(-np.pi, np.pi), "touch": random.uniform(0.10, 0.14),
+        "noise": random.uniform(5e-5, 2e-4), "missing": random.uniform(0.0, 0.06), "seed": seed,
+    }  # fmt: skip
     first = int(random.integers(0, 120))
-    return first, first + int(random.integers(0, 12))
+    gap = first, first + int(random.integers(0, 12))
+    return replace(truth, **{**seen, "gap": gap, **given})  # type: ignore[arg-type]
 
 
 def _on_rod(random: np.random.Generator, count: int) -> tuple[tuple[float, float, float], ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import wave
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -104,7 +103,9 @@ def record(truth: SoundTruth) -> Array:
     modes = [(rng.uniform(900, 9000), rng.uniform(2e-3, 2e-2), rng.normal()) for _ in range(5)]
     delay = rng.uniform(0.004, 0.012)
     heard = np.zeros(time.size)
-    for at, loud in (*_impacts(events), *_knocks(events, truth, rng)):
+    loud_at = [(at, speed**1.2) for at, speed, _ in events]
+    loud_at += [(float(at), 0.3) for at in rng.uniform(0.1, events[-1][0], truth.knocks)]
+    for at, loud in loud_at:
         for shift, part in ((0.0, 1.0), (delay, truth.echo)):
             tau = time - at - shift
             on = (tau > 0.0) & (tau < 0.15)
@@ -114,16 +115,6 @@ def record(truth: SoundTruth) -> Array:
     hiss = np.convolve(rng.normal(size=time.size), np.exp(-np.arange(40) / 8.0), "same")
     heard = truth.gain * heard / np.abs(heard).max() + truth.noise * hiss / hiss.std()
     return np.asarray(np.clip(heard, -1.0, 1.0))
-
-
-def _impacts(events: list[tuple[float, float, float]]) -> Iterator[tuple[float, float]]:
-    return ((time, speed**1.2) for time, speed, _ in events)
-
-
-def _knocks(
-    events: list[tuple[float, float, float]], truth: SoundTruth, rng: np.random.Generator
-) -> Iterator[tuple[float, float]]:
-    return ((float(t), 0.3) for t in rng.uniform(0.1, events[-1][0], truth.knocks))
 
 
 def write_wav(samples: Array, path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -204,10 +204,9 @@ def _drops(rng: np.random.Generator) -> Rig:
 def _heated(rng: np.random.Generator) -> Rig:
     flat = _flat(rng)
     hot = np.linspace(293.0, 0.5 * flat.melting, 4).round()
-    rig = _rig(rng, "heated", flat, _balls(rng, _some(rng, [5e-3, 8e-3], 1)),
-               speeds=_steps(rng, 0.5, 3.0, 4), read=["restitution", "permanent_depth_m"],
-               repeats=8, temperature=np.tile(np.repeat(hot, 2), 4))  # fmt: skip
-    return rig
+    return _rig(rng, "heated", flat, _balls(rng, _some(rng, [5e-3, 8e-3], 1)),
+                speeds=_steps(rng, 0.5, 3.0, 4), read=["restitution", "permanent_depth_m"],
+                repeats=8, temperature=np.tile(np.repeat(hot, 2), 4))  # fmt: skip
 
 
 def _pressed(rng: np.random.Generator) -> Rig:
@@ -222,11 +221,12 @@ def _pressed(rng: np.random.Generator) -> Rig:
     ]  # fmt: skip
     more, load = (np.array(c) for c in zip(*loads, strict=True))
     n = len(more)
-    return Rig(
-        rig.bench, flat, balls, np.concatenate([rig.which, more.astype(np.intp)]),
-        np.concatenate([rig.angle, np.full(n, 0.5 * math.pi)]),
-        np.concatenate([rig.speed, np.zeros(n)]), np.full(len(rig.which) + n, 293.0),
-        np.concatenate([rig.load, load.round(1)]), rig.mu, rig.noise,
+    return replace(
+        rig, which=np.concatenate([rig.which, more.astype(np.intp)]),
+        angle=np.concatenate([rig.angle, np.full(n, 0.5 * math.pi)]),
+        speed=np.concatenate([rig.speed, np.zeros(n)]),
+        load=np.concatenate([rig.load, load.round(1)]),
+        temperature=np.full(len(rig.which) + n, 293.0),
     )  # fmt: skip
 
 
@@ -236,8 +236,7 @@ def _plateau(rng: np.random.Generator) -> Rig:
     strain = np.concatenate([[0.0], np.geomspace(0.002, 0.2, 12)])
     end, rise = float(rng.uniform(0.008, 0.025)), float(rng.uniform(0.3, 0.7))
     stress = 1.0 + rise * (1.0 - np.exp(-np.maximum(strain - end, 0.0) / 0.06))
-    given = {k: getattr(rig, k) for k in Rig.__dataclass_fields__}
-    return Rig(**given | {"bench": "plateau", "curve": np.stack([strain, stress])})
+    return replace(rig, bench="plateau", curve=np.stack([strain, stress]))
 
 
 BENCHES: dict[str, Callable[[np.random.Generator], Rig]] = {

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ... import fem
-from ...campaigns.case import Case
-from ...campaigns.schema import CURVE
+from ...campaigns import Case, CaseRecord, Store
+from ...campaigns.records import UnloadingRecord
 from ...core.arrays import Array
 from ...core.material import Material, Pair
-from ...core.output import write_file
 from .result import Result
 
 
@@ -29,31 +26,24 @@ class Effort(Enum):
 
 
 @dataclass(frozen=True)
-class Branch:
-    """Curves of one branch in SI units, each of shape (n,), and what was left after unloading."""
-
-    curve: dict[str, Array]
-    depth: float = 0.0
-    residual_sphere: float = 0.0
-    residual_flat: float = 0.0
-    steps: int = 0
-    completed: bool = True
-
-
-@dataclass(frozen=True)
 class Solved:
-    """The kept part of a solve: curves, counters and how it ended (no fields)."""
+    """The part of a stored solve that checks read; `message` is empty where it was completed."""
 
     pair: Pair
-    loading: Branch
-    unloadings: tuple[Branch, ...]
-    counters: dict[str, float]
-    completed: bool
-    message: str
+    curve: dict[str, Array]
+    unloadings: tuple[UnloadingRecord, ...] = ()
+    counters: dict[str, float] = field(default_factory=dict)
+    message: str = ""
+
+    @classmethod
+    def of(cls, record: CaseRecord) -> Solved:
+        """Return that part of a case."""
+        pair, left = record.case.pair, record.unloadings
+        return cls(pair, record.curve, left, record.counters, record.message)
 
     def __getitem__(self, name: str) -> Array:
         """Column of the loading curve by its name in `fem.Curve`."""
-        return self.loading.curve[name]
+        return self.curve[name]
 
     @property
     def share(self) -> Array:
@@ -78,30 +68,30 @@ class Bench:
 
     def solve(self, case: Case) -> Solved:
         """Solve a case, or read it if the same numerics have solved it before."""
-        path = self.folder / "solves" / f"{case.id[:24]}.json"
-        if path.exists():
-            raw = json.loads(path.read_text(encoding="utf-8"))
-            self.reused_cpu_s += raw["counters"]["cpu_s"]
-            return _solved(case.pair, raw)
+        if case.id in self._store.statuses():
+            found = Solved.of(self._store.read(case.id))
+            self.reused_cpu_s += found.counters["cpu_s"]
+            return found
         self._warm_up()
         self.say(f"  solving {case.name} at level {case.accuracy.level}")
         started = time.perf_counter()
-        raw = _kept(fem.solve(case.problem, accuracy=case.accuracy))
-        raw["case"] = case.specification()
-        write_file(path, json.dumps(raw))
+        solution = fem.solve(case.problem, accuracy=case.accuracy)
+        self._store.put(case, solution)
         self.say(
-            f"    {raw['message']} {raw['counters']['cpu_s']:.0f} processor seconds, "
+            f"    {solution.outcome} {solution.counters.cpu_s:.0f} processor seconds, "
             f"{time.perf_counter() - started:.0f} s"
         )
-        return _solved(case.pair, raw)
+        return Solved.of(self._store.read(case.id))
 
     def kept_solves(self) -> Iterator[tuple[Case, Solved]]:
         """Every solve of the present numerics that is kept."""
-        for path in sorted((self.folder / "solves").glob("*.json")):
-            raw = json.loads(path.read_text(encoding="utf-8"))
-            case = Case.from_specification(raw["case"])
-            if path.stem == case.id[:24]:
-                yield case, _solved(case.pair, raw)
+        for record in self._store.read_all():
+            if record.id == record.case.id:
+                yield record.case, Solved.of(record)
+
+    @property
+    def _store(self) -> Store:
+        return Store(self.folder / "solves")
 
     def _warm_up(self) -> None:
         """Let the compiled code be loaded, so that no timed solve pays for it."""
@@ -110,47 +100,3 @@ class Bench:
             problem = fem.ContactProblem(Pair(body, body, 1e-3), (1e-5, 3e-5), unload_from=(3e-5,))
             fem.solve(problem, accuracy=fem.Accuracy.smoke())
             self._warm = True
-
-
-def _kept(solution: fem.Solution) -> dict[str, Any]:
-    return {
-        "loading": {"curve": _columns(solution.loading)},
-        "unloadings": [
-            {
-                "curve": _columns(u.curve),
-                "depth": u.depth,
-                "residual_sphere": u.residual_sphere,
-                "residual_flat": u.residual_flat,
-                "steps": u.steps,
-                "completed": u.outcome.completed,
-            }
-            for u in solution.unloadings
-        ],
-        "counters": {
-            name: getattr(solution.counters, name) for name in fem.Counters.__dataclass_fields__
-        },
-        "completed": solution.outcome.completed,
-        "message": str(solution.outcome),
-    }
-
-
-def _columns(curve: fem.Curve) -> dict[str, list[float | None]]:
-    return {
-        name: [None if np.isnan(x) else float(x) for x in getattr(curve, name)] for name in CURVE
-    }
-
-
-def _solved(pair: Pair, raw: dict[str, Any]) -> Solved:
-    return Solved(
-        pair=pair,
-        loading=_branch(raw["loading"]),
-        unloadings=tuple(_branch(u) for u in raw["unloadings"]),
-        counters=raw["counters"],
-        completed=raw["completed"],
-        message=raw["message"],
-    )
-
-
-def _branch(raw: dict[str, Any]) -> Branch:
-    curve = {name: np.array(values, dtype=float) for name, values in raw["curve"].items()}
-    return Branch(**{**raw, "curve": curve})

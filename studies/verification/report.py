@@ -11,7 +11,7 @@ from ...core.provenance import environment
 from ...core.tables import markdown
 from .bench import Effort
 from .checks import CHECKS
-from .result import Measurement, Result, Table
+from .result import Cell, Measurement, Result
 from .runner import best_result, publish
 
 
@@ -27,21 +27,18 @@ def write_report(path: Path, *, folder: Path) -> Path:
     for result in found:
         publish(result, folder=beside)
     absent = [name for name, r in known.items() if r is None]
-    lines = [*_head(found), *_summary(found, absent)]
-    rows = ["# What the solver was checked against: every number", ""]
-    for result in found:
-        if result.missed:
-            lines += _section(result)
-        rows += _rows(result)
-    write_file(folder / "rows.md", "\n".join(rows).rstrip() + "\n")
-    return write_file(path, "\n".join(lines).rstrip() + "\n")
+    missed = (part for result in found if result.missed for part in _section(result))
+    rows = (part for result in found for part in _rows(result))
+    every = ["# What the solver was checked against: every number", *rows]
+    write_file(folder / "rows.md", "\n\n".join(every) + "\n")
+    parts = [*_head(found), *_summary(found, absent), *missed]
+    return write_file(path, "\n\n".join(parts) + "\n")
 
 
 def _head(results: list[Result]) -> Iterator[str]:
     versions = environment()
     packages = ", ".join(f"{k} {v}" for k, v in versions.items() if k != "commit")
     yield "# What the solver was checked against"
-    yield ""
     yield (
         "Made by `dentscope verify`; `--list` names the checks, `--only NAME` runs one, all take "
         f"{sum(r.cpu_s for r in results) / 3600.0:.1f} processor hours. Marks were set before "
@@ -49,21 +46,17 @@ def _head(results: list[Result]) -> Iterator[str]:
         "`production` unless a row says otherwise. How each was done, and every number, any run "
         "writes to `build/verification/rows.md`; as data they lie in `docs/verification/results`."
     )
-    yield ""
     yield f"Numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
-    yield ""
 
 
 def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
-    yield "| check | marks met | number nearest to its mark |"
-    yield "| --- | --- | --- |"
+    rows = [("check", "marks met", "number nearest to its mark")]
     for r in results:
         title = f"[{r.title}](#{_anchor(r.title)})" if r.missed else r.title
-        yield f"| {title} | {_met(r)} | {_nearest(r)} |"
-    yield ""
+        rows.append((title, _met(r), _nearest(r)))
+    yield markdown(rows).rstrip()
     if absent:
         yield f"Not measured yet: {', '.join(absent)}."
-        yield ""
 
 
 def _nearest(result: Result) -> str:
@@ -87,37 +80,24 @@ def _met(result: Result) -> str:
 
 
 def _section(result: Result) -> Iterator[str]:
-    """The marks that a check missed, and why."""
+    """The marks that a check missed, and why, a block after the other."""
     yield f"## {result.title}"
-    yield ""
     yield "Missed:"
-    yield ""
-    for m in result.missed:
-        yield f"- {m.what}: {_value(m)} ({m.mark})"
-    yield ""
-    why = next((check.missed for check in CHECKS if check.name == result.name), "")
-    if why:
-        yield why
-        yield ""
+    yield "\n".join(f"- {m.what}: {_value(m)} ({m.mark})" for m in result.missed)
+    yield from (check.missed for check in CHECKS if check.name == result.name and check.missed)
 
 
 def _rows(result: Result) -> Iterator[str]:
     """Everything that a check measured."""
     yield f"## {result.title}"
-    yield ""
     yield result.about
-    yield ""
     if result.measurements:
-        yield "| measured | value | mark | | reference |"
-        yield "| --- | --- | --- | --- | --- |"
-        for m in result.measurements:
-            yield _measurement(m)
-        yield ""
+        head = ["| measured | value | mark | | reference |", "| --- | --- | --- | --- | --- |"]
+        yield "\n".join([*head, *map(_measurement, result.measurements)])
     for table in result.tables:
-        yield from _table(table)
-    for note in result.notes:
-        yield note
-        yield ""
+        yield f"{table.title}:"
+        yield markdown([table.columns, *([_shown(x) for x in row] for row in table.rows)]).rstrip()
+    yield from result.notes
 
 
 def _value(m: Measurement) -> str:
@@ -129,13 +109,8 @@ def _measurement(m: Measurement) -> str:
     return f"| {_cell(m.what)} | {_value(m)} | {m.mark} | {state} | {_cell(m.source)} |"
 
 
-def _table(table: Table) -> Iterator[str]:
-    yield f"{table.title}:"
-    yield ""
-    rows = (
-        [f"{x:.4g}" if isinstance(x, float) else _cell(str(x)) for x in row] for row in table.rows
-    )
-    yield markdown([table.columns, *rows])
+def _shown(value: Cell) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else _cell(str(value))
 
 
 def _cell(text: str) -> str:

@@ -71,11 +71,12 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Result:
     """What one check found.
 
-    - `name`, `title`: of the check.
+    - `name`: of the check, as the runner writes it.
+    - `title`: in the report.
     - `about`: how it was done, a sentence or two.
     - `measurements`, `tables`: the numbers.
     - `notes`: what a reader must know to judge the numbers.
@@ -85,7 +86,7 @@ class Result:
     - `complete`: whether all of it is measured; if not, the next run goes on.
     """
 
-    name: str
+    name: str = ""
     title: str
     about: str
     measurements: tuple[Measurement, ...] = ()

@@ -66,6 +66,7 @@ def _measured(check: Check, bench: Bench) -> Result:
     def stamped(found: Result) -> Result:
         return replace(
             found,
+            name=check.name,
             effort=bench.effort.value,
             numerics_version=fem.NUMERICS_VERSION,
             cpu_s=time.process_time() - started + bench.reused_cpu_s,

@@ -19,7 +19,8 @@ from dentscope import fem
 from dentscope.campaigns.cases.pairs import TABLE_2_1, table_2_1
 from dentscope.core import Pair
 from dentscope.core.processes.threads import in_one_thread
-from dentscope.studies.verification.calculix import Deck, measure, solve_deck, write_deck
+from dentscope.studies.verification.calculix.deck import Deck, write_deck
+from dentscope.studies.verification.calculix.output import measure, solve_deck
 
 DEEPEST, DEPTHS, TURNS = 0.1, 48, (0.03, 0.1)
 FINE = fem.Accuracy.production()
@@ -33,7 +34,6 @@ def problem_of(pair: Pair, *, turns: tuple[float, ...]) -> fem.ContactProblem:
 
 @in_one_thread
 def ours(pair: Pair) -> dict[str, Any]:
-    """Solve a pair and say what it took."""
     problem, start = problem_of(pair, turns=TURNS), time.process_time()
     found = fem.solve(problem, accuracy=FINE)
     fem.discretisation_uncertainty(found.loading, problem, FINE)
@@ -46,7 +46,6 @@ def ours(pair: Pair) -> dict[str, Any]:
 
 
 def theirs(pair: Pair) -> dict[str, Any]:
-    """The same by CalculiX."""
     deck = Deck(problem_of(pair, turns=()), FINE)
     printed, spent = solve_deck(write_deck(deck))
     found = measure(deck, printed)
@@ -55,7 +54,6 @@ def theirs(pair: Pair) -> dict[str, Any]:
 
 
 def told(record: dict[str, Any]) -> str:
-    """Line of a pair."""
     text = f"{record['name']:10s} ours {record['ours_s']:6.1f} s"
     if "theirs_s" not in record:
         return text
@@ -69,7 +67,6 @@ def told(record: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Go on with the pairs, then print the median."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=Path)
     parser.add_argument("--theirs", type=int, default=15, help="pairs that CalculiX solves too")

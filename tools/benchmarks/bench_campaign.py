@@ -1,4 +1,4 @@
-"""Scaling of a campaign from one to two workers, what the store costs, and 16 and 200 cores.
+"""Scaling of a campaign from one to two workers, and 16 and 200 cores.
 
 Run it on a machine with two free cores: other work shows up as lost scaling. The projection lays
 the cases of the design `full` on the workers in their order, each with the time that the finished
@@ -27,6 +27,7 @@ from dentscope.campaigns.executor import LocalExecutor
 
 CASES = 8
 DEPTH = 0.02
+PUT_S = 0.1  # of the coordinator, by bench_scale.py
 OWN = Path("build/campaign")
 
 
@@ -60,30 +61,17 @@ def measured(workers, folder):
     return ends[-1], steady, path
 
 
-def store_cost(path):
-    """Seconds that the coordinator takes to store and to read a case."""
-    store, records = Store(path), Store(path).read_all()
-    solution = fem.solve(records[0].case.problem, accuracy=fem.Accuracy.smoke())
-    started = time.perf_counter()
-    for record in records:
-        store.put(record.case, solution)
-    put = (time.perf_counter() - started) / len(records)
-    started = time.perf_counter()
-    store.read_all()
-    return put, (time.perf_counter() - started) / len(records)
-
-
-def laid_out(costs, workers, put):
+def laid_out(costs, workers):
     """Wall time of costs on workers, in order; the one coordinator stores them one by one."""
     free, stored = [0.0] * workers, 0.0
     for cost in costs:
         end = heapq.heappop(free) + cost
-        stored = max(stored, end) + put
+        stored = max(stored, end) + PUT_S
         heapq.heappush(free, end)
     return max(stored, *free)
 
 
-def projection(put):
+def projection():
     cases = list(distinct_cases(DESIGNS["full"]).values())
     known = Store(OWN).summaries() if OWN.exists() else []
     ended = [(s.case, s.cpu_s) for s in known if s.status == "done" and not s.stale]
@@ -95,14 +83,14 @@ def projection(put):
         f"finished cases; the longest {max(costs) / 60:.1f} min"
     )
     for workers in (2, 16, 200):
-        wall = laid_out(costs, workers, put)
+        wall = laid_out(costs, workers)
         best = sum(costs) / workers
         print(f"{workers:4} cores: {wall / 3600:.2f} h, {best / wall:.0%} of the ideal")
 
 
 def main():
     if "--projection" in sys.argv:
-        projection(0.1)
+        projection()
         return
     with tempfile.TemporaryDirectory() as folder:
         measured(2, Path(folder) / "warm")  # compiled code is on disk from here on
@@ -112,10 +100,7 @@ def main():
         print(f"{CASES} cases of {cpu:.1f} processor s on {os.cpu_count()} cores")
         print(f"{one:.1f} s with 1 worker, {two:.1f} s with 2: {one / two:.2f}, starting included")
         print(f"scaling 1 -> 2 workers once they run: {one_steady / two_steady:.2f} (mark: 1.8)")
-        size = sum(file.stat().st_size for file in Store(path).files()) / CASES
-        put, read = store_cost(path)
-    print(f"store: {size / 1e3:.0f} kB, {put * 1e3:.0f} ms to write and {read * 1e3:.0f} to read")
-    projection(put)
+    projection()
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ python tools/benchmarks/bench_fem.py
 from __future__ import annotations
 
 import time
+import timeit
 from collections.abc import Callable
 
 import numpy as np
@@ -26,13 +27,8 @@ STEEL = Material(E=200e9, nu=0.3, Sy=503e6)
 
 def seconds(work: Callable[[], object], repeats: int = 5) -> float:
     """Median processor seconds of a call, after one that is not counted."""
-    work()
-    spent = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        spent.append(time.process_time() - start)
-    return float(np.median(spent))
+    spent = timeit.repeat(work, timer=time.process_time, number=1, repeat=1 + repeats)
+    return float(np.median(spent[1:]))
 
 
 def main() -> None:

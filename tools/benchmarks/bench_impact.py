@@ -1,7 +1,6 @@
 """Speed of the compiled impact integrator, and its agreement with the library's on many impacts.
 
-python tools/benchmarks/bench_impact.py            impacts a second, on one core
-python tools/benchmarks/bench_impact.py rates      the marks: steps, work and table, beside Hertz
+python tools/benchmarks/bench_impact.py [rates]    the marks: steps, work and table, beside Hertz
 python tools/benchmarks/bench_impact.py agree 1000 largest difference to the reference integrator
 python tools/benchmarks/bench_impact.py agree 1000 300 the same from number 300 on
 """
@@ -12,6 +11,7 @@ import math
 import runpy
 import sys
 import time
+import timeit
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -57,25 +57,6 @@ def thesis_scene(law: str, angle: float, *, modes: int) -> Scene:
     )  # fmt: skip
 
 
-def speed() -> None:
-    print("law, angle, modes: impacts a second (processor time), 0.5-4 m/s, tolerance 1e-7 / 1e-6")
-    for law in LAWS:
-        for angle in (90.0, 45.0):
-            for modes, count in ((0, 4000), (20, 200)):
-                scene = thesis_scene(law, angle, modes=modes)
-                settings = FAST if modes == 0 else Settings(tolerance=1e-6)
-                body = np.tile(arrays_of(scene, settings).body, (count, 1))
-                body[:, c.V_Y] = -np.linspace(0.5, 4.0, count)
-                strike_rows(scene, body[:2], settings)
-                start = time.process_time()
-                rows = strike_rows(scene, body, settings)
-                rate = count / (time.process_time() - start)
-                contacts = rows[:, c.FIRST_COUNT + 1].mean()
-                print(
-                    f"  {law:15s} {angle:3.0f} {modes:3d}: {rate:8.0f}  (contacts {contacts:.1f})"
-                )
-
-
 def rates() -> None:
     """What is asked for, each figure the best of three, processor time of one core."""
     print("impacts a second, 0.5-4 m/s, by steps: tolerance 1e-7, with modes 1e-6; by work: 1e-7")
@@ -109,7 +90,7 @@ def rates() -> None:
         )
     pair = thesis_scene("fitted", 90.0, modes=0).pair
     depth = pair.R * 10.0 ** np.random.default_rng(2).uniform(-6.0, -1.0, 1_000_000)
-    for name, law in laws.items():
+    for name, law in (laws | {"jackson-green": LAWS["jackson-green"]}).items():
         law.loading(pair, depth[:2])
         print(f"  a million forces, {name}: {best(lambda x=law: x.loading(pair, depth)):.4f} s")
     print("  (mark of the table 0.02 s)")
@@ -117,12 +98,7 @@ def rates() -> None:
 
 def best(run: Callable[[], object]) -> float:
     """Shortest processor time of three runs [s]."""
-    found = []
-    for _ in range(3):
-        start = time.process_time()
-        run()
-        found.append(time.process_time() - start)
-    return min(found)
+    return min(timeit.repeat(run, timer=time.process_time, number=1, repeat=3))
 
 
 def random_scene(rng: np.random.Generator, number: int) -> Scene:
@@ -192,7 +168,5 @@ def agree(count: int, first: int = 0) -> None:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["agree"]:
         agree(*map(int, sys.argv[2:]))
-    elif sys.argv[1:2] == ["rates"]:
-        rates()
     else:
-        speed()
+        rates()

@@ -4,7 +4,7 @@
 
 Balls of steel straight on a harder flat, each at a speed of its own: our law by work and by steps,
 the thesis's law and Jackson and Green's by steps. Processor seconds of one core, the best of three.
-Forces alone: bench_fitted_law.py.
+Forces alone: bench_impact.py.
 """
 
 from __future__ import annotations

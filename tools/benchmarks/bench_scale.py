@@ -9,9 +9,7 @@ Published cases, copied with a Poisson ratio smaller by a millionth each, go one
 timed goes through the functions that the commands use, each in a process of its own for its peak of
 memory (what the process held before is taken off). The last column is the share of one case in the
 largest over that in the smallest, or of one call where the row says `one`: 1 where nothing grows.
-The first cluster, workers and scheduler too, lies in this one process, over tcp, and solves
-nothing; the second has a worker at each of two addresses of this machine, solves a whole small
-design and loses a worker on the way.
+The cluster, workers and scheduler too, lies in this one process, over tcp, and solves nothing.
 """
 
 from __future__ import annotations
@@ -22,11 +20,8 @@ import json
 import multiprocessing
 import resource
 import shutil
-import subprocess
-import sys
 import tempfile
 import time
-import tracemalloc
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -37,17 +32,12 @@ from dentscope import fem
 from dentscope.campaigns import (
     Case,
     CaseRecord,
-    Design,
-    Forecast,
     Store,
-    distinct_cases,
-    publish,
     read_curves,
     read_published,
 )
-from dentscope.campaigns.parts import CHECKSUMS, part_of
 from dentscope.campaigns.store import file_of
-from dentscope.core.errors import Ending, InputError, Outcome
+from dentscope.core.errors import Ending, Outcome
 from dentscope.fem.solution import Counters, Curve, Profile, Unloading
 from dentscope.recordings import read
 from dentscope.recordings.checks import audit
@@ -55,9 +45,7 @@ from dentscope.recordings.shipped import FOLDER, shipped_sets
 
 PUBLISHED = Path("data/campaign")
 BASE = 20  # cases that a run's are copies of
-ONLY = (
-    "recordings", "stores", "reads", "parts", "coordinator", "ledger", "cluster", "two-addresses",
-)  # fmt: skip
+ONLY = ("recordings", "stores", "reads", "cluster")
 
 
 def solution_of(record: CaseRecord) -> fem.Solution:
@@ -204,102 +192,14 @@ def _sized(call: Callable[..., Any], *args: Any) -> int:
     return len(call(*args))
 
 
-def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int) -> None:
-    """Published parts: read, made, and how many are allowed."""
-    sums = (PUBLISHED / CHECKSUMS).read_text().splitlines()
-    found = []
-    for factor in factors:
-        place = folder / f"parts-{factor}"
-        place.mkdir()
-        lines = []
-        for line in sums:
-            digest, name = line.split()
-            for k in range(factor):
-                shutil.copyfile(PUBLISHED / name, place / f"{k}-{name}")
-                lines.append(f"{digest}  {k}-{name}\n")
-        (place / CHECKSUMS).write_text("".join(lines))
-        size = sum(p.stat().st_size for p in place.glob("*.h5")) / 1e6
-        found.append((size, *apart(_sized, read_curves, place)))
-        shutil.rmtree(place)
-    sizes = [row[3] for row in found]
-    show("Published parts of so many cases (the parts copied)", sizes, [
-        ("bytes", "MB", [row[0] for row in found]),
-        ("read_curves", "s", [row[1] for row in found]),
-        ("read_curves", "MB held", [row[2] for row in found]),
-    ])  # fmt: skip
-    some = [base, len(records)]
-    made = [apart(_part, records[:n]) for n in some]
-    show("One part made of so many cases", some, [
-        ("part_of", "s", [row[0] for row in made]),
-        ("part_of", "MB held", [row[1] for row in made]),
-        ("bytes", "MB", [row[2] / 1e6 for row in made]),
-    ])  # fmt: skip
-    print(_published_too_much(folder))
-
-
-def _published_too_much(folder: Path) -> str:
-    """Three more parts beside those of today."""
-    some, place = folder / "some", folder / "published"
-    put_all(some, read_published(PUBLISHED)[:40])
-    shutil.copytree(PUBLISHED, place)
-    own = Store(some).read_all()
-    design = Design("bench", "", lambda: tuple(record.case for record in own))
-    try:
-        made = publish(design, some, place, most_bytes=int(_part(own) / 2.2))
-        return f"{len(made)} more parts published beside those of today"
-    except InputError as error:
-        return f"parts published beside those of today: refused ({error.message}; {error.allowed})"
-
-
-def _part(records: list[CaseRecord]) -> int:
-    return len(part_of(records, about={"design": "bench", "numerics_version": "5"}))
-
-
-def coordinator(records: list[CaseRecord], sizes: list[int]) -> None:
-    """What the process that runs a campaign holds and computes for each case, stored or not."""
-    taken: dict[str, list[float]] = {"ids": [], "cases": [], "orders": [], "forecast": []}
-    for size in sizes:
-        specs = [record.case.specification() for record in records]
-        tracemalloc.start()
-        made = tuple(_copies(specs, size))
-        held = tracemalloc.get_traced_memory()[0]
-        orders = {case.name: case.specification() for case in made}
-        both = tracemalloc.get_traced_memory()[0]
-        tracemalloc.stop()
-        started = time.perf_counter()
-        cases = distinct_cases(Design("bench", "", lambda m=made: m))
-        gone = time.perf_counter() - started
-        taken["ids"].append(gone)
-        taken["cases"].append(held / 1e6)
-        taken["orders"].append((both - held) / 1e6)
-        half = list(cases.values())
-        ended = [(case, 30.0) for case in half[: size // 2]]
-        forecast = Forecast(half[size // 2 :], workers=2, ended=ended)
-        started = time.perf_counter()
-        for k in range(3):
-            forecast.end(half[size // 2 + k], 30.0 * (k + 1))
-            forecast.left_s(30.0 * (k + 1))
-        taken["forecast"].append((time.perf_counter() - started) / 3)
-        del orders
-    show("A design of so many cases in the coordinator", sizes, [
-        ("ids of the cases", "s", taken["ids"]),
-        ("held as cases", "MB", taken["cases"]),
-        ("held as orders, own workers only", "MB", taken["orders"]),
-        ("one forecast, after a case has ended", "s", taken["forecast"]),
-    ])  # fmt: skip
-
-
-def _copies(specs: list[dict[str, Any]], size: int) -> Iterable[Case]:
-    return (neighbour(specs[k % len(specs)], 1 + k // len(specs)) for k in range(size))
-
-
 def cluster(records: list[CaseRecord], crews: list[int], count: int) -> None:
     """The campaign's own hand-out to a dask cluster whose workers answer at once."""
     from dentscope.campaigns.executor import DaskExecutor
     from distributed import LocalCluster
 
     answer = solution_of(records[0])
-    made = list(_copies([r.case.specification() for r in records], count))
+    specs = [record.case.specification() for record in records]
+    made = (neighbour(specs[k % len(specs)], 1 + k // len(specs)) for k in range(count))
     cases = {case.id: case for case in made}
     rows: dict[str, list[float]] = {}
     for crew in crews:
@@ -331,49 +231,6 @@ def cluster(records: list[CaseRecord], crews: list[int], count: int) -> None:
           + "".join(f"{n:>11,}" for n in crews))  # fmt: skip
     for name, values in rows.items():
         print(f"{name:50}" + "".join(f"{v:11.4g}" for v in values), flush=True)
-
-
-ADDRESSES = ("127.0.0.1", "127.0.0.2")
-
-
-def two_addresses(folder: Path) -> None:
-    """A whole small design by the command, on dask workers at two addresses; one is killed."""
-    file, out = folder / "scheduler.json", folder / "run-on-two"
-    started = time.perf_counter()
-    here = _dask("scheduler", file, "--host", ADDRESSES[0], "--port", "0")
-    workers = [
-        _dask("worker", file, "--host", address, "--name", address, "--nthreads", "1", "--no-nanny")
-        for address in ADDRESSES
-    ]
-    try:
-        while not file.exists():
-            time.sleep(0.1)
-        run = subprocess.Popen([
-            sys.executable, "-P", "-m", "dentscope", "campaign", "run", "--design", "smoke",
-            "--out", str(out), "--scheduler", json.loads(file.read_text())["address"],
-        ], stdout=subprocess.DEVNULL)  # fmt: skip
-        while run.poll() is None and (stored := len(_statuses(out))) < 3:
-            time.sleep(0.2)
-        workers[1].kill()
-        code, found = run.wait(), _statuses(out)
-    finally:
-        for process in (*workers, here):
-            process.kill()
-    ends = {end: list(found.values()).count(end) for end in sorted(set(found.values()))}
-    print(f"\ndesign smoke on workers at {' and '.join(ADDRESSES)}, the second killed with "
-          f"{stored} cases stored: exit code {code}, {ends}, "
-          f"{time.perf_counter() - started:.0f} s")  # fmt: skip
-
-
-def _dask(what: str, file: Path, *options: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-P", "-m", f"distributed.cli.dask_{what}", "--no-dashboard"]
-    return subprocess.Popen(
-        [*command, "--scheduler-file", str(file), *options], stderr=subprocess.DEVNULL
-    )
-
-
-def _statuses(out: Path) -> dict[str, str]:
-    return Store(out).statuses() if out.is_dir() else {}
 
 
 def recordings(folder: Path, count: int, rows: list[int]) -> None:
@@ -416,29 +273,7 @@ def _audited_one(folder: Path) -> tuple[float, float]:
     return middle - started, time.perf_counter() - middle
 
 
-def ledger(folder: Path, sizes: list[int]) -> None:
-    """One more event of a proof's ledger, after so many."""
-    from dentscope.studies.proof.seal import Ledger, _chain
-
-    times = []
-    for size in sizes:
-        before, lines = "", []
-        for k in range(size):
-            event = {"event": "verdict", "set": f"set-{k}", "verdict": "0" * 64, "exit": 0,
-                     "cpu_s": 15.0, "wall_s": 20.0, "message": ""}  # fmt: skip
-            before = _chain(before, event)
-            lines.append(json.dumps(event | {"chain": before}, sort_keys=True) + "\n")
-        path = folder / f"ledger-{size}.jsonl"
-        path.write_text("".join(lines))
-        started = time.perf_counter()
-        Ledger(path).add(event="verdict", set="next")
-        times.append(time.perf_counter() - started)
-    print("\nOne event added to a proof's ledger of "
-          + ", ".join(f"{n:,}: {t:.3f} s" for n, t in zip(sizes, times, strict=True)))  # fmt: skip
-
-
 def main() -> None:
-    """Print every table, or one."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", choices=ONLY, default="")
@@ -446,9 +281,6 @@ def main() -> None:
     quick = given.quick
     started = time.perf_counter()
     records = read_published(PUBLISHED)
-    today, base = len(records), 25 if quick else 107
-    sizes = [today // 10, today * 3 // 10, today] if quick else [today, 3 * today, 10 * today]
-    print(f"{today} published cases; the column of today's size is {today:,}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         calls: dict[str, Callable[[], None]] = {
@@ -459,15 +291,9 @@ def main() -> None:
                 folder, records, [20, 100, 1000, *([] if quick else [10_000, 100_000])]
             ),
             "reads": lambda: reads(folder, records, 1_000 if quick else 10_000),
-            "parts": lambda: parts(
-                folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base
-            ),
-            "coordinator": lambda: coordinator(records[::10], sizes),
-            "ledger": lambda: ledger(folder, [200, 2_000, *([] if quick else [20_000])]),
             "cluster": lambda: cluster(
                 records, [2, 20] if quick else [2, 20, 100], 200 if quick else 400
             ),
-            "two-addresses": lambda: two_addresses(folder),
         }
         for what in (given.only,) if given.only else ONLY:
             calls[what]()

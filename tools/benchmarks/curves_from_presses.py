@@ -98,7 +98,6 @@ def struck(name: str, presses: list[dict[str, float]]) -> list[dict[str, float]]
 
 
 def _speed(energy: float) -> float:
-    """Speed of the ball at an energy."""
     return math.sqrt(2.0 * energy / (4.0 / 3.0 * math.pi * R**3 * DENSITY))
 
 
@@ -131,7 +130,6 @@ def told(name: str, marks: list[dict[str, float]], folder: Path) -> dict[str, li
 
 
 def main() -> None:
-    """Go on with the metals, then print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=Path)
     out = parser.parse_args().out

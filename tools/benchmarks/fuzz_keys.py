@@ -61,7 +61,6 @@ def quantity(draw, *given):
 
 
 def body(draw, *, of_case=False):
-    """A table of a body."""
     if draw.random() < 0.07:
         return {"rigid": True}
     table = {
@@ -83,7 +82,6 @@ def body(draw, *, of_case=False):
 
 
 def hardening(draw, strength):
-    """A law of hardening of a strength."""
     law = draw.choice(("swift", "ludwik", "voce", "johnson-cook"))
     size = strength * draw.choice((1e-3, 0.3, 1.5, 10.0, 1e3))
     if law == "swift":
@@ -164,12 +162,10 @@ def sweep(draw):
 
 
 def maybe(draw, share, **keys):
-    """The keys, or none."""
     return keys if draw.random() < share else {}
 
 
 def case(draw):
-    """A CASE.toml."""
     last = some(draw, 1e-7, 0.5, 0.01, 1e-3, 1e-6)
     load = {"max_delta_over_R": last}
     load |= maybe(draw, 0.4, unload_from=[last * draw.choice((0.1, 0.5, 1.0))])
@@ -185,7 +181,6 @@ def case(draw):
 
 
 def inverse(draw):
-    """A file of `dentscope inverse`."""
     rod = {
         "tip_radius_m": quantity(draw, 1e-9, 3.0, 8.8e-3),
         "mass_kg": quantity(draw, 1e-18, 1e6, 0.5), "length_m": quantity(draw, 1e-9, 10.0, 0.3),
@@ -230,7 +225,6 @@ def recordings(draw):
 
 
 def toml(content):
-    """A TOML text of plain tables."""
     lines = []
 
     def value(x):

@@ -60,7 +60,6 @@ def forces(pair: Pair, ratio: float, level: str) -> np.ndarray:
 
 
 def main() -> None:
-    """Print by how much the finite elements carry more than the law."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--ratios", type=float, nargs="+", default=[3.0, -3.0])
     options.add_argument("--level", default="smoke", choices=("smoke", "quick", "production"))

@@ -86,7 +86,6 @@ def noticed(stage: str, name: str, factor: float) -> str:
 
 
 def main() -> None:
-    """Change numbers one by one and tell which test noticed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--stage", choices=STAGES)
     parser.add_argument("--random", type=int, metavar="N", help="only so many, drawn")

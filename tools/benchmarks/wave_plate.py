@@ -104,7 +104,6 @@ def blow(
 
 
 def told(thickness: float, R: float, speed: float, strength: float) -> float:
-    """Return the restitution that `half-space-waves` has."""
     metal = Material(E=E, nu=NU, density=RHO, Sy=strength if strength > 0.0 else math.inf)
     scene = Scene(
         LAWS["fitted" if strength > 0.0 else "hertz"], Pair(metal, metal, R),
@@ -116,7 +115,6 @@ def told(thickness: float, R: float, speed: float, strength: float) -> float:
 
 
 def main() -> None:
-    """Print both losses for each thickness."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--thickness", type=float, nargs="+", default=[0.005, 0.0135, 0.02, 0.03])
     options.add_argument("--radius", type=float, default=0.005)

@@ -7,7 +7,7 @@ An effect is a name, a form and numbers; `put` writes it into the rows of a benc
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,13 +30,17 @@ class Effect:
     textbook: bool = False
 
 
+Draw = Callable[[np.random.Generator, Rig, float], Effect]
+Put = Callable[[Array, Rig, Effect], None]
+
+
 @dataclass(frozen=True)
 class Kind:
     """How an effect is drawn and put, and the benches that can show it."""
 
     benches: tuple[str, ...]
-    draw: Callable[[np.random.Generator, Rig, float], Effect]
-    put: Callable[[Array, Rig, Effect], None]
+    draw: Draw
+    put: Put
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:
@@ -48,6 +52,56 @@ def _pick(rng: np.random.Generator, first: str, second: str, textbook: str) -> t
     if textbook and rng.random() < 0.4:
         return textbook, True
     return (first if rng.random() < 0.5 else second), False
+
+
+Number = float | tuple[float, float] | Callable[[np.random.Generator, Rig], float]
+"""A number as it is, log-uniform between two, or drawn in a way of its own."""
+
+
+def _even(low: float, high: float) -> Number:
+    return lambda rng, rig: float(rng.uniform(low, high))
+
+
+def _in_tips(low: float, high: float) -> Number:
+    """Log-uniform, in radii of the middle striker's tip."""
+    return lambda rng, rig: (
+        float(np.median([s.tip_radius for s in rig.strikers])) * _log(rng, low, high)
+    )
+
+
+def _drawn(
+    name: str, forms: str | tuple[str, str, str], numbers: Mapping[str, Mapping[str, Number]]
+) -> Draw:
+    """Return a draw of the form, or of one of `_pick`'s three, and of its numbers.
+
+    `numbers`: by form; those of all others under an empty name.
+    """
+
+    def draw(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
+        form, known = (forms, False) if isinstance(forms, str) else _pick(rng, *forms)
+        found = {}
+        for key, told in numbers.get(form, numbers.get("", {})).items():
+            value = _log(rng, *told) if isinstance(told, tuple) else told
+            found[key] = value(rng, rig) if callable(value) else value
+        return Effect(name, form, found, known)
+
+    return draw
+
+
+Places = Mapping[int, float | str]
+
+
+def _placed(places: Places, forms: Mapping[str, Places] | None = None) -> Put:
+    """Return what writes into places of the rows: a number as it is, or the effect's by its key.
+
+    `forms`: further places by form.
+    """
+
+    def put(p: Array, rig: Rig, effect: Effect) -> None:
+        for place, told in {**places, **(forms or {}).get(effect.form, {})}.items():
+            p[:, place] = effect.numbers[told] if isinstance(told, str) else told
+
+    return put
 
 
 # --- flow stress ------------------------------------------------------------------------------
@@ -65,41 +119,6 @@ def _rate(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("strain-rate-hardening", form, numbers, known)
 
 
-def _put_rate(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    if effect.form == "overstress-power":
-        kind, a, b = flow.POWER, k["D"], k["q"]
-    elif effect.form == "overstress-logarithm":
-        kind, a, b = flow.LOGARITHM, k["C"], k["reference"]
-    else:
-        kind, a, b = flow.THERMAL, k["A"], k["m"]
-    p[:, at.RATE_KIND], p[:, at.RATE_A], p[:, at.RATE_B] = kind, a, b
-
-
-def _hardening(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "voce", "voce", "swift")
-    if form == "voce":
-        numbers = {"rise": _log(rng, 0.15, 1.2), "strain": _log(rng, 0.008, 0.05)}
-    else:
-        numbers = {"n": _log(rng, 0.06, 0.35), "strain": _log(rng, 0.002, 0.008)}
-    return Effect("work-hardening", form, numbers, known)
-
-
-def _put_hardening(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    voce = effect.form == "voce"
-    p[:, at.HARD_KIND] = flow.VOCE if voce else flow.SWIFT
-    p[:, at.HARD_A] = k["rise"] if voce else k["n"]
-    p[:, at.HARD_B] = k["strain"]
-
-
-def _thermal(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "exponential", "exponential", "power-of-homologous-temperature")
-    if form == "exponential":
-        return Effect("thermal-softening", form, {"T_scale": _log(rng, 500.0, 3000.0)}, known)
-    return Effect("thermal-softening", form, {"m": _log(rng, 0.6, 2.5)}, known)
-
-
 def _put_thermal(p: Array, rig: Rig, effect: Effect) -> None:
     rise = rig.temperature - 293.0
     if effect.form == "exponential":
@@ -107,24 +126,6 @@ def _put_thermal(p: Array, rig: Rig, effect: Effect) -> None:
     else:
         melt = rig.target.melting - 293.0
         p[:, at.STRENGTH] *= 1.0 - (np.maximum(rise, 0.0) / melt) ** effect.numbers["m"]
-
-
-def _layer(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "plateau", "plateau", "exponential")
-    depth = float(np.median([s.tip_radius for s in rig.strikers]))
-    numbers = {"rise": _log(rng, 0.2, 1.8), "thickness": depth * _log(rng, 0.015, 0.08)}
-    return Effect("hardened-layer", form, numbers, known)
-
-
-def _put_layer(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.LAYER_KIND] = flow.PLATEAU if effect.form == "plateau" else flow.EXPONENTIAL
-    p[:, at.LAYER_A] = effect.numbers["rise"]
-    p[:, at.LAYER_B] = effect.numbers["thickness"]
-
-
-def _size(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "power", "power", "swadener")
-    return Effect("size-effect", form, {"length": _log(rng, 15e-6, 300e-6)}, known)
 
 
 def _put_size(p: Array, rig: Rig, effect: Effect) -> None:
@@ -172,16 +173,6 @@ def _beam(p: Array, rig: Rig, effect: Effect) -> None:
         row[at.FOLLOW] = 3.0 * period if effect.name == "rod-longitudinal-waves" else 2e-3
 
 
-def _axial(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    numbers = {"elements": 30.0, "loss_time": _log(rng, 3e-9, 1e-7)}
-    return Effect("rod-longitudinal-waves", "bar-elements", numbers)
-
-
-def _flexural(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    numbers = {"elements": 40.0, "loss_time": _log(rng, 3e-9, 1e-7)}
-    return Effect("rod-flexural-vibration", "beam-elements", numbers)
-
-
 _BLOCK = 0.1  # [kg]
 
 
@@ -198,13 +189,6 @@ def _support(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("support-compliance", "spring-with-play", numbers)
 
 
-def _put_support(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    p[:, at.SUPPORT_MASS], p[:, at.SUPPORT_STIFFNESS] = k["mass"], k["stiffness"]
-    p[:, at.SUPPORT_DAMPING] = k["damping"]
-    p[:, at.SUPPORT_GAP] = k.get("gap", 0.0)
-
-
 # --- tangential -------------------------------------------------------------------------------
 
 
@@ -215,34 +199,10 @@ def _elastic_slip(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("tangential-compliance", form, {"ratio": ratio}, form == "spring-and-slider")
 
 
-def _put_elastic_slip(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.TANGENTIAL_RATIO] = effect.numbers["ratio"]
-
-
-def _speed_friction(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "hyperbolic", "logarithmic", "exponential")
-    if form == "logarithmic":
-        numbers = {"share": _log(rng, 0.06, 0.25), "speed": _log(rng, 0.02, 0.3)}
-    else:
-        numbers = {"share": _log(rng, 0.3, 2.0), "speed": _log(rng, 0.1, 0.8)}
-    return Effect("velocity-dependent-friction", form, numbers, known)
-
-
-def _put_speed_friction(p: Array, rig: Rig, effect: Effect) -> None:
-    kinds = {"hyperbolic": 1.0, "logarithmic": 2.0, "exponential": 3.0}
-    p[:, at.FRICTION_KIND] = kinds[effect.form]
-    p[:, at.FRICTION_A], p[:, at.FRICTION_B] = effect.numbers["share"], effect.numbers["speed"]
-
-
 def _plough(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     if rng.random() < 0.4:
         return Effect("ploughing-friction", "spherical-cap", {"factor": _log(rng, 0.5, 4.0)}, True)
     return Effect("ploughing-friction", "power-of-width", {"factor": _log(rng, 0.05, 0.5)})
-
-
-def _put_plough(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.PLOUGH_KIND] = 1.0 if effect.form == "spherical-cap" else 2.0
-    p[:, at.PLOUGH] = effect.numbers["factor"]
 
 
 def _tilt(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
@@ -273,17 +233,6 @@ def _damping(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("contact-damping", form, {"time": _log(rng, 2e-7, 6e-6)}, known)
 
 
-def _put_damping(p: Array, rig: Rig, effect: Effect) -> None:
-    known = effect.form == "hunt-crossley"
-    p[:, at.DAMP_KIND] = 1.0 if known else 2.0
-    p[:, at.DAMP] = effect.numbers["chi" if known else "time"]
-
-
-def _adhesion(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    form, known = _pick(rng, "maugis", "maugis", "jkr")
-    return Effect("adhesion", form, {"work": _log(rng, 0.05, 0.6)}, known)
-
-
 def _put_adhesion(p: Array, rig: Rig, effect: Effect) -> None:
     W = effect.numbers["work"]
     R, E = p[:, at.TIP], p[:, at.MODULUS]
@@ -303,12 +252,6 @@ def _film(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("squeeze-film", form, numbers)
 
 
-def _put_film(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    p[:, at.FILM_VISCOSITY], p[:, at.FILM_THICKNESS] = k["viscosity"], k["thickness"]
-    p[:, at.FILM_CLOSED], p[:, at.FILM_EXIT] = k["closed"], k["exit"]
-
-
 def _rough(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     tip = float(np.median([s.tip_radius for s in rig.strikers]))
     numbers = {
@@ -320,21 +263,11 @@ def _rough(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("roughness", "finite-height-closure", numbers)
 
 
-def _put_rough(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    p[:, at.ROUGH_KIND] = float(effect.form == "finite-height-closure")
-    p[:, at.ROUGH], p[:, at.ROUGH_FORCE], p[:, at.ROUGH_LOSS] = k["height"], k["force"], k["kept"]
-
-
 def _cut(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     tip = rig.strikers[0].tip_radius
     form = "image-of-cut-paraboloid" if family == at.FOUNDATION else "rounded-edge"
     known = family == at.FOUNDATION
     return Effect("truncated-tip", form, {"radius": tip * _log(rng, 0.02, 0.09)}, known)
-
-
-def _put_cut(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.FLAT] = effect.numbers["radius"]
 
 
 def _slow(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
@@ -354,79 +287,92 @@ def _put_slow(p: Array, rig: Rig, effect: Effect) -> None:
 _METALS = ("rods-normal", "balls-normal")
 
 EFFECTS: dict[str, Kind] = {
-    "strain-rate-hardening": Kind((*_METALS, "balls-drops", "balls-heated"), _rate, _put_rate),
+    "strain-rate-hardening": Kind((*_METALS, "balls-drops", "balls-heated"), _rate, _placed({}, {
+        "overstress-power": {at.RATE_KIND: flow.POWER, at.RATE_A: "D", at.RATE_B: "q"},
+        "overstress-logarithm": {
+            at.RATE_KIND: flow.LOGARITHM, at.RATE_A: "C", at.RATE_B: "reference"},
+        "zerilli-armstrong": {at.RATE_KIND: flow.THERMAL, at.RATE_A: "A", at.RATE_B: "m"},
+    })),
     "work-hardening": Kind(
-        (*_METALS, "balls-drops", "balls-small", "balls-heated"), _hardening, _put_hardening
-    ),
-    "thermal-softening": Kind(("balls-heated",), _thermal, _put_thermal),
+        (*_METALS, "balls-drops", "balls-small", "balls-heated"),
+        _drawn("work-hardening", ("voce", "voce", "swift"), {
+            "voce": {"rise": (0.15, 1.2), "strain": (0.008, 0.05)},
+            "swift": {"n": (0.06, 0.35), "strain": (0.002, 0.008)},
+        }),
+        _placed({at.HARD_B: "strain"}, {
+            "voce": {at.HARD_KIND: flow.VOCE, at.HARD_A: "rise"},
+            "swift": {at.HARD_KIND: flow.SWIFT, at.HARD_A: "n"},
+        })),
+    "thermal-softening": Kind(
+        ("balls-heated",),
+        _drawn("thermal-softening",
+               ("exponential", "exponential", "power-of-homologous-temperature"),
+               {"exponential": {"T_scale": (500.0, 3000.0)}, "": {"m": (0.6, 2.5)}}),
+        _put_thermal),
     "half-space-waves": Kind(("balls-elastic", "balls-normal", "balls-drops"), _waves, _put_waves),
-    "rod-longitudinal-waves": Kind(("rods-normal",), _axial, _beam),
-    "rod-flexural-vibration": Kind(("rods-oblique", "rods-angles"), _flexural, _beam),
-    "support-compliance": Kind((*_METALS, "balls-heated"), _support, _put_support),
-    "tangential-compliance": Kind(("balls-oblique",), _elastic_slip, _put_elastic_slip),
+    "rod-longitudinal-waves": Kind(
+        ("rods-normal",),
+        _drawn("rod-longitudinal-waves", "bar-elements",
+               {"": {"elements": 30.0, "loss_time": (3e-9, 1e-7)}}), _beam),
+    "rod-flexural-vibration": Kind(
+        ("rods-oblique", "rods-angles"),
+        _drawn("rod-flexural-vibration", "beam-elements",
+               {"": {"elements": 40.0, "loss_time": (3e-9, 1e-7)}}), _beam),
+    "support-compliance": Kind(
+        (*_METALS, "balls-heated"), _support,
+        _placed({at.SUPPORT_MASS: "mass", at.SUPPORT_STIFFNESS: "stiffness",
+                 at.SUPPORT_DAMPING: "damping"}, {"spring-with-play": {at.SUPPORT_GAP: "gap"}})),
+    "tangential-compliance": Kind(
+        ("balls-oblique",), _elastic_slip, _placed({at.TANGENTIAL_RATIO: "ratio"})),
     "velocity-dependent-friction": Kind(
-        ("balls-oblique", "rods-oblique"), _speed_friction, _put_speed_friction
-    ),
-    "ploughing-friction": Kind(("rods-oblique", "balls-oblique"), _plough, _put_plough),
+        ("balls-oblique", "rods-oblique"),
+        _drawn("velocity-dependent-friction", ("hyperbolic", "logarithmic", "exponential"), {
+            "logarithmic": {"share": (0.06, 0.25), "speed": (0.02, 0.3)},
+            "": {"share": (0.3, 2.0), "speed": (0.1, 0.8)},
+        }),
+        _placed({at.FRICTION_A: "share", at.FRICTION_B: "speed"}, {
+            "hyperbolic": {at.FRICTION_KIND: 1.0}, "logarithmic": {at.FRICTION_KIND: 2.0},
+            "exponential": {at.FRICTION_KIND: 3.0},
+        })),
+    "ploughing-friction": Kind(
+        ("rods-oblique", "balls-oblique"), _plough,
+        _placed({at.PLOUGH: "factor"}, {"spherical-cap": {at.PLOUGH_KIND: 1.0},
+                                        "power-of-width": {at.PLOUGH_KIND: 2.0}})),
     "contact-damping": Kind(
-        ("balls-elastic", "microspheres", "balls-heated", *_METALS), _damping, _put_damping
-    ),
-    "adhesion": Kind(("microspheres",), _adhesion, _put_adhesion),
-    "squeeze-film": Kind(("balls-normal", "balls-elastic"), _film, _put_film),
-    "roughness": Kind(("balls-small",), _rough, _put_rough),
-    "truncated-tip": Kind(("rods-normal",), _cut, _put_cut),
-    "hardened-layer": Kind((*_METALS, "balls-small", "balls-heated"), _layer, _put_layer),
-    "size-effect": Kind(("balls-small",), _size, _put_size),
+        ("balls-elastic", "microspheres", "balls-heated", *_METALS), _damping,
+        _placed({}, {"hunt-crossley": {at.DAMP_KIND: 1.0, at.DAMP: "chi"},
+                     "square-root-of-depth": {at.DAMP_KIND: 2.0, at.DAMP: "time"}})),
+    "adhesion": Kind(
+        ("microspheres",),
+        _drawn("adhesion", ("maugis", "maugis", "jkr"), {"": {"work": (0.05, 0.6)}}),
+        _put_adhesion),
+    "squeeze-film": Kind(
+        ("balls-normal", "balls-elastic"), _film,
+        _placed({at.FILM_VISCOSITY: "viscosity", at.FILM_THICKNESS: "thickness",
+                 at.FILM_CLOSED: "closed", at.FILM_EXIT: "exit"})),
+    "roughness": Kind(
+        ("balls-small",), _rough,
+        _placed({at.ROUGH: "height", at.ROUGH_FORCE: "force", at.ROUGH_LOSS: "kept"},
+                {"finite-height-closure": {at.ROUGH_KIND: 1.0}})),
+    "truncated-tip": Kind(("rods-normal",), _cut, _placed({at.FLAT: "radius"})),
+    "hardened-layer": Kind(
+        (*_METALS, "balls-small", "balls-heated"),
+        _drawn("hardened-layer", ("plateau", "plateau", "exponential"),
+               {"": {"rise": (0.2, 1.8), "thickness": _in_tips(0.015, 0.08)}}),
+        _placed({at.LAYER_A: "rise", at.LAYER_B: "thickness"},
+                {"plateau": {at.LAYER_KIND: flow.PLATEAU},
+                 "exponential": {at.LAYER_KIND: flow.EXPONENTIAL}})),
+    "size-effect": Kind(
+        ("balls-small",),
+        _drawn("size-effect", ("power", "power", "swadener"), {"": {"length": (15e-6, 300e-6)}}),
+        _put_size),
     "impact-speed-loss": Kind(_METALS, _slow, _put_slow),
     "tilt": Kind(("rods-oblique", "rods-angles"), _tilt, _put_tilt),
-}
+}  # fmt: skip
 """The names of the verdict, in its order."""
 
 
 # --- outside the library ----------------------------------------------------------------------
-
-
-def _softening(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    numbers = {"fall": float(rng.uniform(0.25, 0.55)), "strain": _log(rng, 0.006, 0.02)}
-    return Effect("strain-softening", "saturating", numbers)
-
-
-def _put_softening(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    p[:, at.HARD_KIND], p[:, at.HARD_A], p[:, at.HARD_B] = flow.SOFTENING, k["fall"], k["strain"]
-
-
-def _crushed(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    tip = float(np.median([s.tip_radius for s in rig.strikers]))
-    numbers = {"fall": float(rng.uniform(0.35, 0.75)), "thickness": tip * _log(rng, 0.02, 0.08)}
-    return Effect("crushed-layer", "gaussian", numbers)
-
-
-def _put_crushed(p: Array, rig: Rig, effect: Effect) -> None:
-    k = effect.numbers
-    p[:, at.LAYER_KIND], p[:, at.LAYER_A], p[:, at.LAYER_B] = (
-        flow.CRUSHED,
-        k["fall"],
-        k["thickness"],
-    )
-
-
-def _falling(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    return Effect("negative-rate-sensitivity", "logarithm", {"C": _log(rng, 0.02, 0.08)})
-
-
-def _put_falling(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.RATE_KIND], p[:, at.RATE_A], p[:, at.RATE_B] = flow.FALLING, effect.numbers["C"], 1.0
-
-
-def _oscillating(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    tip = float(np.median([s.tip_radius for s in rig.strikers]))
-    numbers = {"share": float(rng.uniform(0.12, 0.35)), "length": tip * _log(rng, 0.04, 0.12)}
-    return Effect("oscillating-strength", "sine-of-width", numbers)
-
-
-def _put_oscillating(p: Array, rig: Rig, effect: Effect) -> None:
-    p[:, at.WAVE_A], p[:, at.WAVE_B] = effect.numbers["share"], effect.numbers["length"]
 
 
 def _order(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
@@ -457,11 +403,25 @@ def _put_threshold(p: Array, rig: Rig, effect: Effect) -> None:
 
 
 OUTSIDE: dict[str, Kind] = {
-    "strain-softening": Kind(_METALS, _softening, _put_softening),
-    "crushed-layer": Kind((*_METALS, "balls-small"), _crushed, _put_crushed),
-    "negative-rate-sensitivity": Kind(_METALS, _falling, _put_falling),
-    "oscillating-strength": Kind((*_METALS, "balls-small"), _oscillating, _put_oscillating),
+    "strain-softening": Kind(
+        _METALS,
+        _drawn("strain-softening", "saturating",
+               {"": {"fall": _even(0.25, 0.55), "strain": (0.006, 0.02)}}),
+        _placed({at.HARD_KIND: flow.SOFTENING, at.HARD_A: "fall", at.HARD_B: "strain"})),
+    "crushed-layer": Kind(
+        (*_METALS, "balls-small"),
+        _drawn("crushed-layer", "gaussian",
+               {"": {"fall": _even(0.35, 0.75), "thickness": _in_tips(0.02, 0.08)}}),
+        _placed({at.LAYER_KIND: flow.CRUSHED, at.LAYER_A: "fall", at.LAYER_B: "thickness"})),
+    "negative-rate-sensitivity": Kind(
+        _METALS, _drawn("negative-rate-sensitivity", "logarithm", {"": {"C": (0.02, 0.08)}}),
+        _placed({at.RATE_KIND: flow.FALLING, at.RATE_A: "C", at.RATE_B: 1.0})),
+    "oscillating-strength": Kind(
+        (*_METALS, "balls-small"),
+        _drawn("oscillating-strength", "sine-of-width",
+               {"": {"share": _even(0.12, 0.35), "length": _in_tips(0.04, 0.12)}}),
+        _placed({at.WAVE_A: "share", at.WAVE_B: "length"})),
     "drift-with-order": Kind((*_METALS, "balls-oblique", "balls-heated"), _order, _put_order),
     "speed-threshold": Kind((*_METALS, "balls-small"), _threshold, _put_threshold),
-}
+}  # fmt: skip
 """Effects that no name of the verdict covers."""

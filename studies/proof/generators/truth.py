@@ -115,26 +115,22 @@ FAMILIES = {"cavity": CAVITY, "foundation": FOUNDATION}
 """The two families and the value of their base law."""
 
 
-def draw(
-    rng: np.random.Generator, kind: str, *, name: str = "", off: bool | None = None, bench: str = ""
-) -> Truth:
+def draw(rng: np.random.Generator, kind: str, *, name: str = "") -> Truth:
     """Draw one case of a family.
 
     - `rng`: source of everything that is drawn.
     - `kind`: `null`, `single`, `pair` or `outside`.
     - `name`: the mechanism of a single, or the effect outside the library; drawn if empty.
-    - `off`: whether materials and geometry differ from what is stated; drawn if left out.
-    - `bench`: the bench of a null; that of some effect if empty.
     """
     family = str(rng.choice(list(FAMILIES)))
-    z = draw_nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
+    z = draw_nuisances(rng) if rng.random() < 0.5 else {}
     instrument = draw_instrument(rng)
     if kind in PLANTED:
         return _planted(rng, kind, family, instrument)
     make = _maker(rng, family, z)
     if kind == "null":
         other = EFFECTS[str(rng.choice(list(EFFECTS)))]
-        rig = make(bench or str(rng.choice(other.benches)), ())
+        rig = make(str(rng.choice(other.benches)), ())
         return Truth(kind, rig, (), (), family, z, instrument, {**rig.metal_told})
     if kind == "pair":
         rig, effects, sizes = _pair(rng, family, z, make)

@@ -33,7 +33,7 @@ from .quantities import (
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """Redraw the figures; `records` are the stored finite-element cases, possibly none."""
     return [
-        *fields.chapter_2(records),
+        *fields.chapter_2(),
         tables.table_2_1_again(),
         _share_five_cases(records),
         *steps.pictures(records),

@@ -22,12 +22,12 @@ _UPDATED = ("jackson-green-2007+ghaednia", "kogut-etsion+ghaednia", "kogut-komvo
 
 
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
-    """Redraw the figures; the finite elements of figure 3.8 come with the campaign."""
+    """Redraw the figures; the finite elements of figure 3.8 come with the field of 3.7."""
     found = chapter3.bench()
     updated = [law_named(name) for name in _UPDATED] + [LAWS["ghaednia"]]
     first = laws(*_ORIGINAL, "thornton-ning")
     return [
-        *fields.chapter_3_again(records),
+        fields.chapter_3(),
         _force(found),
         _residual(found),
         _cycle(found),
@@ -178,7 +178,6 @@ def _heights(
 
 
 def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
-    """What the text says of figure 3.11, with the mass that fits."""
     mass = found.mass_that_fits
     times = {law.name: _times(found, law, mass, "residual_depth") for law in chosen}
 
@@ -213,7 +212,6 @@ def _small_tip(found: chapter3.Bench) -> str:
 
 
 def _original_rebounds_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
-    """What the text says of figure 3.12, with the mass that fits."""
     off = _off_by_law(found, chosen, "restitution")
     rows = sorted(found.measured, key=lambda r: float(r["drop_height_m"]))
     e = [row["value"] for row in rows if row["observable"] == "restitution"]
@@ -233,7 +231,6 @@ def _original_rebounds_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> 
 
 
 def _updated_depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
-    """What the text says of figure 3.13, with the mass that fits."""
     off = _off_by_law(found, chosen, "residual_depth")
     jackson, etsion = off[_UPDATED[0]], off[_UPDATED[1]]
     mean = {name: 100.0 * float(np.mean(np.abs(values))) for name, values in off.items()}
@@ -252,7 +249,6 @@ def _updated_depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str
 
 
 def _updated_rebounds_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
-    """What the text says of figure 3.14, with the mass that fits."""
     off = _off_by_law(found, chosen, "restitution")
     low, high = ({name: abs(d[k]) for name, d in off.items()} for k in (0, -1))
     first, last = (_UPDATED[0], _UPDATED[2]), (_UPDATED[1], "ghaednia")
@@ -276,6 +272,7 @@ _SAID: dict[str, Callable[[chapter3.Bench, list[ContactLaw]], str]] = {
     "3.11": _depths_said, "3.12": _original_rebounds_said, "3.13": _updated_depths_said,
     "3.14": _updated_rebounds_said,
 }  # fmt: skip
+"""What the text says of each, with the mass that fits."""
 
 _MASSES = (0.151, 0.255, 0.33, 0.345, 0.355)
 """Readings of the rod's mass [kg]: from its size, as printed, and the range that fits."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from ....campaigns import CaseRecord
 from ....core.arrays import Array, Mask
 from ....core.material import Material, Pair
 from ....core.output import write_file
@@ -140,15 +139,10 @@ def read_field(number: str, *, folder: Path = STORE) -> Field | None:
         )  # fmt: skip
 
 
-def chapter_2(records: Sequence[CaseRecord]) -> list[Picture]:
+def chapter_2() -> list[Picture]:
     """Figures 2.1-2.4."""
     found = [(number, read_field(number)) for number in ("2.2", "2.3", "2.4")]
     return [_mesh(), *(_field(number, field) for number, field in found if field is not None)]
-
-
-def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
-    """Figure 3.7."""
-    return [_chapter_3_pictures(read_field("3.7"))]
 
 
 def _grid_of(pair: Pair, depth: float) -> tuple[Array, Any]:
@@ -185,8 +179,9 @@ def _mesh() -> Picture:
     return Picture("2.1", "Mesh, whole and near the contact", made, note)
 
 
-def _chapter_3_pictures(field: Field | None) -> Picture:
-    """Mesh, and beside it the stress where it was solved."""
+def chapter_3() -> Picture:
+    """Figure 3.7: mesh, and beside it the stress where it was solved."""
+    field = read_field("3.7")
     made, axes = sheet(1 if field is None else 2, size=(5.6, 5.6))
     wanted = WANTED["3.7"]
     corners, mesh = _grid_of(wanted.pair(), wanted.depth)

@@ -11,7 +11,6 @@ from ....core.inputs.toml_input import read_toml
 from ....dynamics.inverse import Inferred
 from ....dynamics.result import Impact
 from ....models import LAWS, critical_depth
-from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015
 from ...plot import Table, laws, line_of
 from .. import chapter5
@@ -93,10 +92,6 @@ def legend(names: tuple[str, ...]) -> Table:
     )  # fmt: skip
 
 
-def _measured_brake() -> ContactLaw:
-    return brake_2015(meyer=_MEASURED_N, hardness=_MEASURED_H * _KGF_MM2)
-
-
 def comparison(number: str, angle: float) -> Table:
     """Table 5.2, 5.3 or 5.4: experiment and three laws, printed and computed here."""
     data = read_toml(REFERENCE / "chapter45.toml")
@@ -118,8 +113,8 @@ def comparison(number: str, angle: float) -> Table:
     ]  # fmt: skip
     off: dict[str, list[float]] = {"dent": [], "e": [], "F": []}
     chosen = {
-        "Ghaednia": LAWS["ghaednia"], "Brake 2015": _measured_brake(),
-        "Kogut-Komvopoulos": LAWS["kogut-komvopoulos"],
+        "Ghaednia": LAWS["ghaednia"], "Kogut-Komvopoulos": LAWS["kogut-komvopoulos"],
+        "Brake 2015": brake_2015(meyer=_MEASURED_N, hardness=_MEASURED_H * _KGF_MM2),
     }  # fmt: skip
     struck = []
     for simulation in data["simulation"]:

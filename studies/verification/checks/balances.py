@@ -23,12 +23,11 @@ def run(bench: Bench) -> Result:
         rows.append(
             (case.name, case.accuracy.level, f"{solved['delta'][-1] / solved.pair.R:.3g}",
              f"{100.0 * found[0]:.3f}", *(f"{x:.1e}" if x > 0.0 else "" for x in found[1:]),
-             "" if solved.completed else solved.message)
+             solved.message)
         )  # fmt: skip
     if not rows:
         worst = np.full(3, math.nan)
     return Result(
-        name="balances",
         title="Energy and force",
         about=(
             "Every loading path of the checks: external work against stored plus dissipated "

@@ -52,7 +52,6 @@ def run(bench: Bench) -> Result:
     plastic = a / R > 0.1
     later = float(np.abs(H[plastic] / jackson_green_2007(a[plastic] / R) - 1.0).mean())
     return Result(
-        name="flattening",
         title="Published flattening",
         about=(
             "A perfectly plastic sphere of E = 200 GPa, nu = 0.32, Sy = 619 MPa on a rigid flat, "

@@ -29,7 +29,6 @@ def run(bench: Bench) -> Result:
     measurements = [m for nu in (0.0, 0.3) for m in _stuck(bench, nu, accuracy)]
     rows = [row for pair in _STRENGTHS for row in _effect(bench, *pair)]
     return Result(
-        name="friction",
         title="Friction between the bodies",
         about=(
             "A rigid sphere on an elastic flat, mu = 20, against none: where nothing slides, a^2 "

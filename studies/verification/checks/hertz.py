@@ -34,7 +34,6 @@ def run(bench: Bench) -> Result:
     rms = _pressure_error(snapshot, pair)
     stresses, rows = _axis_error(snapshot, pair)
     return Result(
-        name="hertz",
         title="Elastic contact: Hertz",
         about=(
             "Two elastic bodies of E = 200 GPa, nu = 0.3, production settings. F rises with a/R "
@@ -49,8 +48,9 @@ def run(bench: Bench) -> Result:
             Measurement("pressure, rms error over p_0, r/a 0.2 to 0.9", 100.0 * rms, "%", None, 0.3,
                         _JOHNSON),
             *stresses,
-            _half("sphere's share of identical bodies, largest |delta_s* - 1/2| up to 1e-4",
-                  float(np.abs(c.sphere_share[depth <= 1.01e-4] - 0.5).max())),
+            Measurement("sphere's share of identical bodies, largest |delta_s* - 1/2| up to 1e-4",
+                        float(np.abs(c.sphere_share[depth <= 1.01e-4] - 0.5).max()), "", None,
+                        0.002, "symmetry (Eq. 2.3)"),
         ),
         tables=(
             Table(
@@ -75,10 +75,6 @@ def run(bench: Bench) -> Result:
 
 def _within(what: str, percent: float, mark: float) -> Measurement:
     return Measurement(what, float(percent), "%", -mark, mark, _JOHNSON)
-
-
-def _half(what: str, value: float) -> Measurement:
-    return Measurement(what, value, "", None, 0.002, "symmetry (Eq. 2.3)")
 
 
 def _peak(pair: Pair) -> tuple[float, float]:

@@ -133,7 +133,6 @@ def run(bench: Bench) -> Result:
         _compare(bench, metal, found)
     rows, off, kept, proof = found
     return Result(
-        name="impact-strength",
         title="What hardening and rate make of an impact",
         about=(
             "A steel ball of 8 and 2 mm on a metal of E 70 GPa and yield strength 300 MPa, level "

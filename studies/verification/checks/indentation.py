@@ -49,7 +49,6 @@ def run(bench: Bench) -> Result:
     light = (a > 0.1) & (a < 0.2)
     plateau, c2 = float(H[light].mean()), float(invariant[light].mean())
     return Result(
-        name="indentation",
         title="Published indentation",
         about=(
             "A rigid sphere on a perfectly plastic flat, E = 210 GPa, nu = 0.3, Sy = 50 MPa "

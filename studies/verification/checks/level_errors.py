@@ -254,7 +254,6 @@ def _result(
         for k, knot in enumerate(_KNOTS)
     ]  # fmt: skip
     return Result(
-        name="levels",
         title="What each level of accuracy states of itself",
         about=(
             "Nineteen pairs of Table 2.1 of the thesis at Sy* = 0.1 to 10, to Delta/R = 0.1. The "

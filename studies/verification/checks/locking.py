@@ -28,7 +28,6 @@ def run(bench: Bench) -> Result:
         rows.append((n, f"{100.0 * tube[n]:+.3f} %", f"{100.0 * shell[n]:+.3f} %"))
     elastic = {nu: _incompressible(nu) for nu in (0.3, 0.45, 0.499, 0.4999)}
     return Result(
-        name="locking",
         title="Locking",
         about=(
             "Limit pressure of a thick tube (plane strain, 2/sqrt(3) Sy ln 2) and of a thick "

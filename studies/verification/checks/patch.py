@@ -23,7 +23,6 @@ _PENALTY = 20.0
 def run(bench: Bench) -> Result:
     """Pass a uniform pressure on, by an uneven and by an even flat."""
     return Result(
-        name="patch",
         title="Patch test of the contact",
         about=(
             "Two laterally held blocks, eight even elements on eleven uneven ones, a uniform "

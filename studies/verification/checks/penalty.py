@@ -43,7 +43,6 @@ def run(bench: Bench) -> Result:
     F, a, share = off[same]
     source = "limit of rigid contact"
     return Result(
-        name="penalty",
         title="Contact stiffness",
         about=(
             f"Strengths 503 MPa, E = 200 GPa, level `smoke`, to Delta/R = {_DEEPEST:g}. "

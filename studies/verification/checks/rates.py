@@ -42,7 +42,6 @@ def run(bench: Bench) -> Result:
         (h, f"{f:.6f}", f"{a:.5f}") for h, f, a in zip(_LEVELS, force, radius, strict=True)
     )
     return Result(
-        name="rates",
         title="Rates of convergence",
         about=(
             "Element: u_r = r (1 - 0.3 r^2) cos z, u_z = (1 + 0.4 r^2) sin z on distorted "

@@ -57,7 +57,6 @@ def run(bench: Bench) -> Result:
                  f"{off[2][k]:+.5f}")
             )  # fmt: skip
     return Result(
-        name="role-swap",
         title="Exchange of the bodies",
         about=(
             "At small a/R the bodies may change places: F and a stay, delta_s* turns into 1 - "

@@ -64,7 +64,6 @@ def run(bench: Bench) -> Result:
                 rows.append((n, x, f"{float(_johnson(n, np.array(x))):.0f}",
                              *(f"{100.0 * v:+.2f} %" for v in shown)))  # fmt: skip
     return Result(
-        name="similarity",
         title="Similarity solution of power-law plasticity",
         about=(
             f"A rigid sphere on a flat with the flow stress K (e0 + p)^n, e0 = {_START:g}, E over "
@@ -168,7 +167,6 @@ def speed(bench: Bench) -> Result:
             for x in (0.08, 0.12, 0.16, 0.2)
         ]  # fmt: skip
     return Result(
-        name="speed",
         title="A hundred times the speed",
         about=(
             "A rigid sphere on a flat whose flow stress is a power m of the rate of plastic "

@@ -26,7 +26,6 @@ def run(bench: Bench) -> Result:
     used = _RADII.index(fem.Accuracy.production().flat_radius)
     scale = error[1, :] / 100.0 / (a / _RADII[1])
     return Result(
-        name="truncation",
         title="Truncation of the half-space",
         about=(
             "Elastic pair, far boundary at 3 R to 1000 R; F against that of the largest mesh. "

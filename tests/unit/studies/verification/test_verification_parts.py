@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core import InputError, Material, Pair
-from dentscope.studies.verification.bench import Bench, Branch, Effort, Solved
-from dentscope.studies.verification.calculix import Deck, measure, write_deck
+from dentscope.studies.verification.bench import Bench, Effort, Solved
+from dentscope.studies.verification.calculix.deck import Deck, write_deck
+from dentscope.studies.verification.calculix.output import measure
 from dentscope.studies.verification.checks import Check, check_named
 from dentscope.studies.verification.checks.flattening import _kogut_etsion
 from dentscope.studies.verification.checks.level_errors import _difference, _left, _own
@@ -220,7 +221,7 @@ def solved(force_factor=1.0, radius_factor=1.0, share=0.6, wave=0.0):
         "sphere": share * delta,
         "flat": (1.0 - share) * delta,
     }
-    return Solved(Pair(BODY, BODY, 1e-3), Branch(curve), (), {}, True, "")
+    return Solved(Pair(BODY, BODY, 1e-3), curve)
 
 
 def test_known_differences_are_found_and_what_a_finer_solve_has_left():
