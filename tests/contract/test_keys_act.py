@@ -35,6 +35,7 @@ LUDWIK, JOHNSON, VOCE = (
     '{ law = "voce", Q_Pa = %s, b = %s }',
 )
 QUANTITY = "{ value = %s, std = %s }"
+BODIES = ("[target]", "[strikers.NAME]")
 
 ACTS = {
     ("", "name"): (BALL, '"other"'),
@@ -44,10 +45,9 @@ ACTS = {
     ("", "licence"): (BALL, '"CC0"'),
     ("", "gravity_m_s2"): (BALL, "300"),
     ("[target]", "material"): (BALL, '"iron"'),
-    ("[target]", "E_Pa"): (BALL, "1e11"),
-    ("[target]", "nu"): (BALL, "0.25"),
-    ("[target]", "Sy_Pa"): (BALL, "2e8"),
-    ("[target]", "density_kg_m3"): (BALL, "3000"),
+    **{(body, name): (BALL, value) for body in BODIES
+       for name, value in (("E_Pa", "1e11"), ("nu", "0.25"), ("Sy_Pa", "2e8"),
+                           ("density_kg_m3", "3000"))},
     ("[target]", "rigid"): (BARE.replace("[target]\nE_Pa = 2.0e11\nnu = 0.3", "[target]"), "true"),
     ("[target]", "hardness_Pa"): (BARE, "9e8"),
     ("[target]", "thickness_m"): (BALL, "0.002"),
@@ -67,10 +67,6 @@ ACTS = {
     ("[target.hardening]", "n"): (BARE, LUDWIK % ("5e8", "0.3"), LUDWIK % ("5e8", "0.2")),
     ("[target.hardening]", "b"): (BARE, VOCE % ("2e8", "9.0"), VOCE % ("2e8", "5.0")),
     ("[strikers.NAME]", "material"): (BALL, '"steel"'),
-    ("[strikers.NAME]", "E_Pa"): (BALL, "1e11"),
-    ("[strikers.NAME]", "nu"): (BALL, "0.25"),
-    ("[strikers.NAME]", "Sy_Pa"): (BALL, "2e8"),
-    ("[strikers.NAME]", "density_kg_m3"): (BALL, "3000"),
     ("[strikers.NAME]", "rigid"): (BALL.replace("""
 tip_radius_m = 0.005
 E_Pa = 2.0e11
@@ -155,15 +151,12 @@ ACTS |= {
     (f"[mechanisms.{m.name}]", p.name): _moving(m, p) for m in MECHANISMS for p in m.parameters
 }
 READ = {
-    ("[target]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
-    ("[strikers.NAME]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
+    **{(b, "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6") for b in BODIES},
     ("[target]", "layer_thickness_m"): (BALL + "[mechanisms.hardened-layer]\n", "1e-4", "4e-4"),
-    **{("[target]", name): (HOT + "[mechanisms.thermal-softening]\n", *two)
-       for name, two in (("cp_J_kgK", ("400", "900")), ("melting_K", ("900", "1800")))},
-    ("[impact]", "temperature_K"): (HOT + "[mechanisms.thermal-softening]\n", "600", "700"),
-    ("[environment]", "temperature_K"): (
-        HOT + "[mechanisms.thermal-softening]\n", "293", "350",
-    ),
+    **{place: (HOT + "[mechanisms.thermal-softening]\n", *two) for place, two in (
+        (("[target]", "cp_J_kgK"), ("400", "900")), (("[target]", "melting_K"), ("900", "1800")),
+        (("[impact]", "temperature_K"), ("600", "700")),
+        (("[environment]", "temperature_K"), ("293", "350")))},
     ("[environment]", "fluid"): (LIGHT + "[mechanisms.air-drag]\n", '"air"', '"oil"'),
     **{("[environment]", name): (LIGHT + "[mechanisms.air-drag]\n", *two)
        for name, two in (("density_kg_m3", ("1.0", "1.3")), ("pressure_Pa", ("5e4", "1e5")),
@@ -171,10 +164,9 @@ READ = {
 }  # fmt: skip
 """What a mechanism alone reads, and with which it acts."""
 REFUSED = {
-    **dict.fromkeys([("", "noise")], "{ restitution = 0.01 }"),
-    **{(t, "Ra_m"): "1e-6" for t in ("[target]", "[strikers.NAME]")},
-    **{(t, "cp_J_kgK"): "460" for t in ("[target]", "[strikers.NAME]")},
-    **{(t, "melting_K"): "1800" for t in ("[target]", "[strikers.NAME]")},
+    ("", "noise"): "{ restitution = 0.01 }",
+    **{(body, name): value for body in BODIES
+       for name, value in (("Ra_m", "1e-6"), ("cp_J_kgK", "460"), ("melting_K", "1800"))},
     ("", "gauge"): "{ permanent_depth_m = 0.02 }",
     ("", "dent_edge"): '"rim"',
     ("[target]", "layer_thickness_m"): "1e-4",
@@ -184,11 +176,8 @@ REFUSED = {
     ("[environment]", "pressure_Pa"): "1e5",
     ("[environment]", "temperature_K"): "293",
     ("[impact]", "temperature_K"): "400",
-}
-ONE = {
-    ("[impact]", "striker"), ("[target]", "flow_curve"),
-    ("[strikers.NAME]", "flow_curve"),
 }  # fmt: skip
+ONE = {("[impact]", "striker"), *((body, "flow_curve") for body in BODIES)}
 """One choice alone; and what a test of its own looks at, with a file beside."""
 _TEXTS = ("name", "format", "description", "source", "licence", "material")
 TWIN = "[strikers.NAME.hardening]"

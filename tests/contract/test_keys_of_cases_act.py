@@ -79,12 +79,10 @@ def test_a_key_of_a_case_acts(key, tmp_path, capsys):
             content[path[0]] = merged(content[path[0]], copy.deepcopy(given))
             if "rate" in given:
                 content["load"]["speed_m_s"] = 2.0
-        if path[1:] == ["rigid"]:
+        if path[1] in ("rigid", "flow_curve"):
             before = copy.deepcopy(CASE)
         if path[1:] == ["rate", "law"]:
             path, value = path[:2], JOHNSON
-        if path[1:] == ["flow_curve"]:
-            before = copy.deepcopy(CASE)
     else:
         value = {
             "radius_m": 0.006, "coefficient": 0.2, "level": "smoke", **OF_A_LOAD,

@@ -81,13 +81,13 @@ CHANGED = {
     ("", "gauge"): (ROD, "{ permanent_depth_m = 0.05 }"),
     ("", "dent_edge"): (ROD, '"rim"'),
     ("", "assume"): (ROD, '["half-space-waves"]'),
-    ("[target]", "E_Pa"): (ROD, "1.0e11"),
-    ("[target]", "nu"): (ROD, "0.2"),
+    **{(body, name): (base, value) for body in ("[target]", "[strikers.NAME]")
+       for name, base, value in (("E_Pa", ROD, "1.0e11"), ("nu", ROD, "0.2"),
+                                 ("Ra_m", BALL, "3e-6"))},
     ("[target]", "Sy_Pa"): (ROD, "2e8"),
     ("[target]", "density_kg_m3"): (ROD, "4000"),
     ("[target]", "material"): (BARE, '"aluminium-6061-t6"'),
     ("[target]", "hardness_Pa"): (BARE, "1.0e9", "1.2e9"),
-    ("[target]", "Ra_m"): (BALL, "3e-6"),
     ("[target]", "cp_J_kgK"): (BALL, "200", "100"),
     ("[target]", "melting_K"): (BALL, "900", "500"),
     ("[target]", "thickness_m"): (BALL, "0.003"),
@@ -98,13 +98,10 @@ CHANGED = {
     ("[target]", "shape"): (ON_A_FLAT, '"sphere"\nradius_m = 0.02'),
     ("[target]", "radius_m"): (ON_A_BALL, "-0.02"),
     ("[target]", "mass_kg"): (ON_A_BALL, "0.05"),
-    ("[strikers.NAME]", "E_Pa"): (ROD, "1.0e11"),
-    ("[strikers.NAME]", "nu"): (ROD, "0.2"),
     ("[strikers.NAME]", "Sy_Pa"): (ROD, "4e8"),
     ("[strikers.NAME]", "density_kg_m3"): (ROD, "3000"),
     ("[strikers.NAME]", "material"): (BARE_STRIKER, '"aluminium-6061-t6"'),
     ("[strikers.NAME]", "hardness_Pa"): (BARE_STRIKER, "1.0e9", "1.2e9"),
-    ("[strikers.NAME]", "Ra_m"): (BALL, "3e-6"),
     ("[strikers.NAME]", "cp_J_kgK"): (HIDDEN, "200", "100"),
     ("[strikers.NAME]", "melting_K"): (HIDDEN, "900", "500"),
     ("[strikers.NAME]", "shape"): (BALL, '"rod"\nlength_m = 0.1\nradius_m = 0.0088\nmass_kg = 0.1'),
@@ -181,18 +178,10 @@ def told(text, folder):
     unsure = [(n.name, n.at(0.0), n.at(1.0)) for n in problem.nuisances]
     able = [(o.proposal.change, o.proposal.minutes) for o in _options(simulator).options]
     able += [(what, takes(problem.bench, what)) for what in ("change", "build")]
-    cells = problem.cells
-    measured = [np.asarray(x) for x in (cells.value, cells.std)]
-    return (
-        printed.getvalue(),
-        reasons,
-        unsure,
-        problem.notes,
-        str(problem.error.spreads),
-        numbers,
-        measured,
-        [*able, problem.bench.session_minutes],
-    )
+    able.append(problem.bench.session_minutes)
+    measured = problem.cells.value, problem.cells.std
+    said = printed.getvalue(), reasons, unsure, problem.notes, str(problem.error.spreads)
+    return (*said, numbers, measured, able)
 
 
 def same(one, other):

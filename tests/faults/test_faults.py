@@ -2,12 +2,13 @@
 
 import errno
 import hashlib
-import importlib.util
 import json
 import os
 import re
+import runpy
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import disk_faults
 import fuzz
@@ -120,11 +121,7 @@ def test_everything_is_written_by_the_one_writer():
     assert [one for one in found if not any(word in one for word in allowed)] == []
 
 
-_FILE = Path(__file__).parents[2] / "tools" / "benchmarks" / "fuzz_keys.py"
-_SPEC = importlib.util.spec_from_file_location("fuzz_keys", _FILE)
-fuzz_keys = importlib.util.module_from_spec(_SPEC)
-_SPEC.loader.exec_module(fuzz_keys)
-
+fuzz_keys = SimpleNamespace(**runpy.run_path(str(ROOT / "tools" / "benchmarks" / "fuzz_keys.py")))
 QUICK = ("inverse", "case", "recordings", "export")
 
 

@@ -5,9 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.core import Material
+from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.curves.readings import readings_of, reduced
 from dentscope.discrepancy.curves.reduction import from_profile, from_trace
+from dentscope.dynamics import Approach, Striker, scene_of
+from dentscope.dynamics import traced as trace_of
+from dentscope.models import LAWS
 from dentscope.recordings import read
 
 T, PEAK = 2e-4, 3000.0
@@ -62,10 +67,6 @@ def test_profile_of_a_cap() -> None:
 @pytest.fixture
 def traced(tmp_path: Path) -> Path:
     """One ball, traces of the baseline's own impacts at a tenth of the contact per sample."""
-    from dentscope.core import Material
-    from dentscope.dynamics import Approach, Striker, scene_of, traced
-    from dentscope.models import LAWS
-
     ball, flat = Material(E=208e9, nu=0.3, Sy=2e9), Material(E=206e9, nu=0.29, Sy=3e8)
     (tmp_path / "traces").mkdir()
     rows = ["trial,striker,angle_deg,impact_speed_m_s"]
@@ -75,7 +76,7 @@ def traced(tmp_path: Path) -> Path:
         one = scene_of(
             LAWS["fitted"], sphere=ball, flat=flat, striker=striker, approach=Approach(v)
         )
-        impact = traced(one, points=200)
+        impact = trace_of(one, points=200)
         t, first = np.unique(impact.column("time_s"), return_index=True)
         T = impact.impact.contact_time_s
         grid = np.arange(-T, 2.0 * T, T / 10.0) + 0.03 * T
@@ -95,8 +96,6 @@ def traced(tmp_path: Path) -> Path:
 
 
 def test_a_set_of_traces_only_has_cells_that_the_simulation_meets(traced: Path) -> None:
-    from dentscope.discrepancy.comparison.forward import Point, Simulator
-
     problem = problem_of(read(traced))
     assert set(problem.cells.observable) == {
         "peak_force_N", "contact_time_s", "loading_time_s", "normal_impulse_Ns",

@@ -31,7 +31,7 @@ def scene(angle: float = 90.0) -> Scene:
 
 
 def named(name: str) -> Mechanism:
-    return next(m for m in MECHANISMS if m.name == name)
+    return next(m for m in (*MECHANISMS, *NAMELESS) if m.name == name)
 
 
 def test_a_drop_loses_speed_and_keeps_its_restitution() -> None:
@@ -95,9 +95,9 @@ def test_hardening_is_that_of_the_law_of_metals_that_harden(K: float, n: float) 
     table = strength_table(LAWS["fitted"], pair)
     values = {"hardening_ratio": K, "hardening_exponent": n}
     harder = named("work-hardening").attach(scene().with_(pair=pair), values, AROUND)
-    profile = harder.strengths(table)
+    factor = table.factors(harder.strengths(table))[F_FORCE]
     seen = (table.depth > 3e-4 * pair.R) & (table.depth < 0.05 * pair.R)
-    force = np.exp(table.stated.force) * table.factors(profile)[F_FORCE]
+    force = np.exp(table.stated.force) * factor
     off = np.abs(np.log(force[seen] / LAWS["hardening"].loading(metal, table.depth[seen])))
     assert off.mean() < 0.016
     assert off.max() < 0.026
@@ -154,13 +154,8 @@ def test_a_flat_of_which_nothing_is_stated_weighs_what_its_pulse_reaches() -> No
     )
     support = named("support-compliance")
     # 2 pi R 2.8 S_y is 9.7 MN/m, a quarter period 7.1 us, there and back 19 mm at 5.3 km/s
-    reach = (
-        0.5
-        * math.sqrt(200e9 / (1.0 - 0.09) / 7870.0)
-        * 0.5
-        * math.pi
-        * math.sqrt(2e-4 / (2.0 * math.pi * 1.8e-3 * 2.8 * 305e6))
-    )
+    quarter = 0.5 * math.pi * math.sqrt(2e-4 / (2.0 * math.pi * 1.8e-3 * 2.8 * 305e6))
+    reach = 0.5 * math.sqrt(200e9 / (1.0 - 0.09) / 7870.0) * quarter
     _, mass, _ = support.ranges([(ball, Surroundings())])
     assert mass.low == pytest.approx(7870.0 * reach**3, rel=1e-6)
     assert 0.03 < mass.low < 0.1
@@ -192,8 +187,7 @@ def test_a_size_effect_needs_small_contacts() -> None:
 
 @pytest.mark.parametrize("name", ["work-hardening", "strain-softening"])
 def test_a_measured_curve_leaves_no_hardening_within_its_strains(name: str) -> None:
-    mechanism = next(m for m in (*MECHANISMS, *NAMELESS) if m.name == name)
-    plain = scene()
+    mechanism, plain = named(name), scene()
 
     def followed(last: float) -> Scene:
         curve = tabulated(np.array([0.0, last]), np.array([305e6, 400e6]))

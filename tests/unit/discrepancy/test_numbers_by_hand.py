@@ -89,14 +89,9 @@ def test_one_value_in_sixteen_may_be_a_slip(toy) -> None:
 
 def test_derivatives_are_differences_over_three_tenths_of_a_deviation(toy) -> None:
     seen = []
-
-    class Watched(toy.Simulator):
-        def predict(self, mechanisms, points):
-            seen.extend(points)
-            return super().predict(mechanisms, points)
-
     given = toy.problem([1.0, 2.0], derivative=[[1.0], [3.0]])
-    here, linear = derivatives(Watched(given), (), {}, np.zeros(1))
+    watched = toy.Simulator(given, seen=lambda _, points: seen.extend(points))
+    here, linear = derivatives(watched, (), {}, np.zeros(1))
     assert here.tolist() == [0.0, 0.0]
     assert linear.J.ravel().tolist() == pytest.approx([1.0, 3.0])
     assert {float(abs(p.z[0])) for p in seen} == {0.0, 0.3}

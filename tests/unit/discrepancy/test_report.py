@@ -67,7 +67,7 @@ def test_what_the_sheet_contradicts_itself_in_is_said_with_the_finding() -> None
     assert told.startswith(first + "Nothing is missing")
 
 
-def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: Any) -> None:
+def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is() -> None:
     svg = comparison([point(1.0, with_verdict=0.505), point(2.0, with_verdict=0.505)], SPEED,
                      ["ball"], key="f")  # fmt: skip
     for colour in ("--faint", "--without", "--verdict"):
@@ -132,9 +132,6 @@ def test_undetermined_says_what_leads() -> None:
     told = headline(said("undetermined", 0.32, Located((), (), 3.0)))
     assert "nothing is missing 32 %" in told
     assert "68 %" in told
-
-
-def test_what_is_missing_for_sure_is_said_though_not_what() -> None:
     told = headline(said("undetermined", 0.001, Located((), (), 3.0)))
     assert told.startswith("Something is missing (more than 99 %), but these data do not say what.")
     assert "What leads, by probability: " in told

@@ -1,10 +1,20 @@
-"""Raw files and options that are no good: one line each with file or option, exit code 2."""
+"""Raw files, options and names that are no good: one line each, exit code 2, nothing elsewhere."""
+
+import wave
+from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.core.inputs.toml_input import parse_model
+from dentscope.core.rig import Rig
 from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.output.into_set import store
+from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
+from dentscope.reduce.shared.media import container_of
+from dentscope.reduce.sound.file import _decoded, read_sound
 from dentscope.studies.synthetic.sounds import write_wav
 
 RAMP = "time_s,force_N\n" + "".join(f"{k * 1e-4},{k % 7}\n" for k in range(60))
@@ -14,7 +24,8 @@ PULSE = "time_s,force_N\n" + "".join(
 )
 FALL = "t_s,height_m\n" + "".join(f"{k / 100},{1.0 - 4.905 * (k / 100) ** 2}\n" for k in range(40))
 TIMES = "t (s)\n0.5\n1.0\n1.4\n1.72\n1.98\n"
-HEIGHTS = "drop_cm,up_cm\n50,20\n40,17\n"
+
+
 ROWS = "impact_speed_m_s,restitution\n1.5,0.6\n2.0,0.55\n"
 TRACK = "time_s,A_x_mm,A_y_mm,A_z_mm\n" + "".join(
     f"{k / 100},0,0,{1000 - 4905 * (k / 100) ** 2}\n" for k in range(30)
@@ -180,3 +191,61 @@ def test_mistakes_leave_a_set_as_it_was(tmp_path, errs):
     (tmp_path / "a.csv").write_text("drop height,restitution\n3.0,0.5\n")
     assert "the header names no unit" in errs(*command, "--into", where)
     assert {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()} == before
+
+
+def test_a_playlist_opens_no_other_file(tmp_path):
+    pytest.importorskip("av")
+    (tmp_path / "private").mkdir()
+    with wave.open(str(tmp_path / "private" / "x.wav"), "wb") as sound:
+        sound.setnchannels(1)
+        sound.setsampwidth(2)
+        sound.setframerate(8000)
+        sound.writeframes(b"\0\0" * 800)
+    assert len(_decoded(tmp_path / "private" / "x.wav")[0]) == 800
+    with wave.open(str(tmp_path / "empty.wav"), "wb") as sound:
+        sound.setparams((1, 2, 8000, 0, "NONE", ""))
+    with pytest.raises(InputError, match="silence"):
+        read_sound(tmp_path / "empty.wav")
+    listed = tmp_path / "list.mp3"
+    listed.write_text("ffconcat version 1.0\nfile private/x.wav\n")
+    with (
+        pytest.raises(InputError, match=r"list\.mp3: cannot be decoded"),
+        container_of(listed, "sounds", "WAV") as container,
+    ):
+        list(container.decode(audio=0))
+
+
+TABLE = "drop_height_m,rebound_height_m\n0.5,0.2\n0.4,0.15\n"
+PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)
+
+
+@pytest.mark.parametrize("name", [n for n in PATHS if "\x00" not in n])
+@pytest.mark.parametrize("place", ["--out", "--into"])
+def test_an_option_names_no_other_folder(tmp_path, errs, name, place):
+    raw = tmp_path / "raw.csv"
+    raw.write_text(TABLE)
+    command = ("reduce", "table", raw, "--holds", "trials", "--trial", name)
+    told = errs(*command, place, tmp_path / "o" / "o")
+    assert "trial" in told
+    assert "text that can name a file" in told
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["raw.csv"]
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_a_striker_of_a_file_names_no_other_folder(name: str) -> None:
+    steel = {"E_Pa": 2e11, "nu": 0.3}
+    ball = {"shape": "sphere", "tip_radius_m": 0.01, **steel}
+    with pytest.raises(InputError, match="text that can name a file"):
+        parse_model({"target": steel, "strikers": {name: ball}}, Rig, source="set.toml")
+
+
+def test_trials_without_a_label_keep_a_row_each(tmp_path: Path) -> None:
+    run(["recordings", "new", str(tmp_path / "set")])
+    blows = [Trial({"restitution": Measured(e, 0.01)}) for e in (0.8, 0.7)]
+    (tmp_path / "gates.txt").write_text("1.0 0.8\n1.0 0.7\n")
+    reduced = Reduced(tmp_path / "gates.txt", {}, tuple(blows), lambda to: None)
+    row = Row(striker="ball", impact_speed_m_s=1.0)
+    found = store(reduced, tmp_path / "set", row, kind="gates", options={})
+    assert found.trials == ("gates-1", "gates-2")
+    rows = (tmp_path / "set" / "trials.csv").read_text().splitlines()
+    assert [line.split(",")[0] for line in rows[-2:]] == ["gates-1", "gates-2"]

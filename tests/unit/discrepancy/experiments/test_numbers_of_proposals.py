@@ -23,10 +23,13 @@ from dentscope.discrepancy.experiments.next_experiment import (
     rivals_of,
 )
 from dentscope.discrepancy.experiments.session import Proposal, Session
+from dentscope.discrepancy.metal import next_mark as marks
 from dentscope.discrepancy.metal.estimate import rate_prior
-from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
+from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.lawerror import components
 from dentscope.dynamics import Press
+from dentscope.dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from dentscope.dynamics.strength import NODES
 from dentscope.recordings.bench import Bench
 
 BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
@@ -74,7 +77,6 @@ def pressed_set(toy, monkeypatch):
         x = np.linspace(-5.0, 15.0, 201)
         table = SimpleNamespace(log_depth=x, stated=SimpleNamespace(force=x))
         monkeypatch.setattr(feasible, "strength_table", lambda law, pair: table)
-        monkeypatch.setattr(feasible, "deepest", lambda s: math.log(s.load))
         monkeypatch.setattr(feasible, "at_load", lambda c, s, load: replace(c, press=Press(load)))
         monkeypatch.setattr(feasible, "deepest", lambda s: s.load)  # the table's force is its depth
         given = SimpleNamespace(
@@ -168,13 +170,8 @@ def test_twelve_draws_stand_for_a_rivals_parameters_and_256_for_the_noise(toy) -
 
 def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:
     """Components of exp(-(x/2.5)^2/2): what they add up to at two depths 2.5 apart in ln."""
-    from dentscope.dynamics.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-    from dentscope.dynamics.strength import NODES
-
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
-    from dentscope.discrepancy.unknowns import lawerror
-
-    rows = components(lawerror.RULES.law_length)
+    rows = components(RULES.law_length)
     at = np.stack([[np.interp(x, grid, row) for row in rows] for x in (-8.0, -5.5)])
     alike = at @ at.T
     assert alike[0, 1] / math.sqrt(alike[0, 0] * alike[1, 1]) == pytest.approx(
@@ -183,13 +180,11 @@ def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:
 
 
 def test_a_metals_curve_is_looked_for_by_eight_presses_of_each_striker(toy, monkeypatch) -> None:
-    from dentscope.discrepancy.metal import next_mark as module
-
     given = toy.problem([0.0])
     some = {name: [(toy.condition(), None)] for name in "ab"}
-    monkeypatch.setattr(module, "by_striker", lambda p: some)
-    monkeypatch.setattr(module, "at_load", lambda c, s, load: replace(c, press=Press(load)))
-    found = with_marks(given, (10.0, 1000.0))
+    monkeypatch.setattr(marks, "by_striker", lambda p: some)
+    monkeypatch.setattr(marks, "at_load", lambda c, s, load: replace(c, press=Press(load)))
+    found = marks.with_marks(given, (10.0, 1000.0))
     loads = [c.press.load for c in found.conditions if c.press is not None]
     assert len(loads) == 16
     assert loads[:8] == pytest.approx([10.0 * 100.0 ** (k / 7.0) for k in range(8)], rel=0.05)
@@ -232,7 +227,7 @@ def test_next_mark_is_none_where_a_tenth_is_all_that_is_gained() -> None:
             condition=np.array([0]), std=np.array([noise]), observable=("dent_diameter_m",)
         )
         given = SimpleNamespace(cells=cells, conditions=[condition])
-        return next_mark(given, 0, np.ones((3, 1)), np.eye(1), np.ones((1, 1))) is not None
+        return marks.next_mark(given, 0, np.ones((3, 1)), np.eye(1), np.ones((1, 1))) is not None
 
     # 0.9 of it is left at a noise of 3
     assert [worth(2.9), worth(3.1)] == [True, False]

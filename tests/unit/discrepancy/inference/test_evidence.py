@@ -202,14 +202,11 @@ NOWHERE = np.zeros(0)
 @pytest.fixture
 def bench(toy):
     """One cell that shows the root of its unknown, with its sign, to a tenth."""
-
-    class Bent(toy.Simulator):
-        def predict(self, mechanisms, points):
-            z = np.array([p.z for p in points])
-            return np.sign(z) * np.sqrt(np.abs(z))
-
     given = toy.problem([0.0], derivative=[[0.0]])
-    return Bent(replace(given, cells=replace(given.cells, std=np.array([0.1]))))
+    given = replace(given, cells=replace(given.cells, std=np.array([0.1])))
+    return toy.Simulator(
+        given, lambda _, points: np.array([np.sign(p.z) * np.sqrt(np.abs(p.z)) for p in points])
+    )
 
 
 def expanded(bench, z: np.ndarray) -> Fit:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from dentscope.reduce.bounces.chain import _without_false_ends, _without_strays
 from dentscope.reduce.bounces.scale import scale_of
-from dentscope.reduce.bounces.track import Track, on_the_body
 from dentscope.reduce.images.clip import repeated_frames
 from dentscope.reduce.measured import Measured
 from dentscope.reduce.mocap.rigid import _is_line
@@ -66,18 +65,6 @@ def test_a_residual_of_four_robust_deviations_is_left_out() -> None:
         moved[50] = size
         used.append(bool(robust_regression(np.stack([np.ones_like(x)], axis=1), moved).used[50]))
     assert used == [True, False]
-
-
-def test_parts_of_six_samples_are_the_bodys_own() -> None:
-    """A body that moves with 1 a sample; the tracker holds something else 50 higher for some."""
-
-    def kept(n: int) -> int:
-        height = np.arange(60.0)
-        height[30 : 30 + n] += 50.0
-        return on_the_body(Track(time=np.arange(60.0), height=height)).size
-
-    assert kept(5) == 55
-    assert kept(6) == 60
 
 
 def test_a_covariance_needs_thirty_pairs() -> None:

@@ -246,8 +246,8 @@ def test_contacts_lie_within_a_twentieth_of_the_reach(height, left) -> None:
     assert len(_on_one_flat(found, STAGE)) == left
 
 
-def piece(index, sigma=1e-9):
-    return Piece(np.asarray(index), 0.0, Launch(0.0, 1.0), sigma)
+def piece(index, speed=1.0, sigma=1e-9):
+    return Piece(np.asarray(index), 0.0, Launch(0.0, speed), sigma)
 
 
 @pytest.mark.parametrize(
@@ -299,15 +299,14 @@ def test_six_samples_to_both_sides_say_12_each_at_most(monkeypatch) -> None:
     """They lie on both flights to the last digit: no contact reaches them."""
     time = 1e-3 * (np.arange(60.0) - 29.5)
     track = Track(time, np.abs(time))
-    before = Piece(np.arange(30), 0.0, Launch(0.0, -1.0), 1e-9)
-    after = Piece(np.arange(30, 60), 0.0, Launch(0.0, 1.0), 1e-9)
-    found = likely(monkeypatch, track, (before, after))
+    both = piece(range(30), -1.0), piece(range(30, 60))
+    found = likely(monkeypatch, track, both)
     # of 20 ms, ten to each side
     assert found[-1] == -12.0 * 6 * 2
     assert found[0] == 0.0
     # flights of strays, one of which goes on through the flat
     with np.errstate(all="raise"):
-        assert np.isfinite(likely(monkeypatch, track, (before, after), -0.9999)).all()
+        assert np.isfinite(likely(monkeypatch, track, both, -0.9999)).all()
 
 
 @pytest.mark.parametrize(
@@ -321,17 +320,17 @@ def test_a_soft_contact_bends_as_a_spring_does_within_limits(part, possible, mon
     above = part * (late - half * math.sin(0.5 * math.pi * late / half) / (0.5 * math.pi))
     time = np.array([-gap, gap])
     track = Track(time, gap + above * np.ones(2))
-    before = Piece(np.array([0]), 0.0, Launch(0.0, -1.0), 1e-12)
-    after = Piece(np.array([1]), 0.0, Launch(0.0, 1.0), 1e-12)
-    found = likely(monkeypatch, track, (before, after))
+    found = likely(monkeypatch, track, (piece([0], -1.0, 1e-12), piece([1], 1.0, 1e-12)))
     assert (found[k] == 0.0) == possible
 
 
-@pytest.mark.parametrize(("off", "kept"), [(3.9, 60), (4.1, 56)])
-def test_no_body_is_three_times_as_fast_as_it_mostly_is(off, kept) -> None:
-    """It moves with 1 a sample; four samples lie higher: from them it comes back with 1 less."""
+@pytest.mark.parametrize(
+    ("held", "off", "kept"), [(4, 3.9, 60), (4, 4.1, 56), (5, 50.0, 55), (6, 50.0, 60)]
+)
+def test_no_body_is_three_times_as_fast_as_it_mostly_is_but_for_six_samples(held, off, kept):
+    """It moves with 1 a sample; some lie higher: from them it comes back with 1 less."""
     height = np.arange(60.0)
-    height[30:34] += off
+    height[30 : 30 + held] += off
     assert on_the_body(Track(np.arange(60.0), height)).size == kept
 
 

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.studies.proof import apart, calibrated, lists, page, run, score, seal
+from dentscope.studies.proof import apart, calibrated, lists, page, power, run, score, seal
 from dentscope.studies.proof.case import Case, interval, open_run
 from dentscope.studies.proof.lists import Entry
 
@@ -292,3 +292,51 @@ def test_state_needs_the_whole_interval():
     assert hits(30, 100, most=0.05) == "missed"
     assert hits(100, 100, least=0.9) == "met"
     assert np.isnan(score.share("x", [], bool).value)
+
+
+def tilted(name, size, verdict, kind="single"):
+    return case(name, kind, ["tilt"], verdict, size)
+
+
+TILT = {"verdict": "missing-physics", "mechanisms": ["tilt"]}
+WRONG = {"verdict": "missing-physics", "mechanisms": ["roughness"]}
+CASES = [
+    tilted("a", 3.0, {"verdict": "adequate"}), tilted("b", 12.0, {"verdict": "undetermined"}),
+    tilted("c", 14.0, WRONG), tilted("d", 20.0, TILT), tilted("e", 90.0, TILT),
+    # only sets with one effect have a size of their own
+    tilted("f", 12.0, TILT, "pair"), tilted("g", float("nan"), TILT),
+]  # fmt: skip
+
+
+def test_sets_are_counted_by_the_size_of_their_effect():
+    found = power.by_size(power.shown(CASES))
+    assert found == [
+        (0.0, 5.0, 0, 0, 1), (10.0, 20.0, 1, 0, 2), (20.0, 40.0, 1, 1, 1),
+        (40.0, float("inf"), 1, 1, 1),
+    ]  # fmt: skip
+
+
+def test_the_page_of_a_kept_run_has_plan_power_and_rules(tmp_path):
+    sure = {"verdict": "missing-physics", "names": [["tilt"]], "odds": {"tilt": 0.9}}
+    none = {"verdict": "adequate", "names": [], "odds": {"baseline": 0.84}}
+    peers = [
+        {"set": c.name, "truth": ["tilt"], "acting": 2, "source": "s",
+         "said": {"diagnosis": sure, "BIC": none}, "seconds": {"diagnosis": 8.0, "rules": 2.0}}
+        for c in CASES
+    ]  # fmt: skip
+    entry = page.summary(
+        CASES, which="full", tree="ab" * 32, date="2020-01-01", total=7, peers=peers, plan="cd" * 32
+    )
+    runs = page.keep(entry, tmp_path / "runs.json")
+    assert runs == [entry]
+    kept = json.loads((tmp_path / "runs.json").read_text())
+    page.publish(kept, tmp_path)
+    text = (tmp_path / "proof.md").read_text()
+    assert "The [plan](proof-plan.md), SHA-256 `cdcdcdcdcdcd`, was sealed" in text
+    row = "| 10 to 20 | 2 | 0.50 (0.01 to 0.99) | 0.00 (0.00 to 0.84) |"
+    assert row in (tmp_path / "proof-details.md").read_text()
+    assert "| less | in front, points |" in text
+    assert "| BIC | 100.0 (100.0 to 100.0) | 0.016 | 6.11 (6.11 to 6.11) |" in text
+    assert "Primary mark, 4 points in front: met. 0.2 in mean ln p: met." in text
+    assert "| false alarms on nulls | detected, size above 10 |" in text
+    assert (tmp_path / "pictures" / power.PICTURE).stat().st_size > 10_000
