@@ -138,16 +138,11 @@ def test_an_extreme_file_is_answered_or_refused(number):
 
 
 @pytest.mark.parametrize(
-    ("out", "told"),
-    [("a  nan", "NAN"), ("e = inf", "NAN"), ("banana infinite", "answered"), ("0.5", "answered")],
-)
-def test_a_nan_with_exit_code_0_is_a_fault(out, told):
-    assert fuzz_keys.judged("impact", 0, out, "") == told
-
-
-def test_faults_are_told_from_refusals():
-    assert fuzz_keys.judged("impact", 2, "", "a.toml: target.nu: 0.7\n") == "refused"
-    assert fuzz_keys.judged("impact", 2, "", "") == "UNSAID"
-    assert fuzz_keys.judged("impact", 2, "", "depth: a depth is not a number") == "UNSAID"
-    assert fuzz_keys.judged("impact", 1, "", "Traceback (most recent call last)") == "TRACEBACK"
-    assert fuzz_keys.judged("impact", 3, "", "budget") == "not ended"
+    ("code", "out", "err", "told"),
+    [(0, "a  nan", "", "NAN"), (0, "e = inf", "", "NAN"), (0, "banana infinite", "", "answered"),
+     (0, "0.5", "", "answered"), (2, "", "a.toml: target.nu: 0.7\n", "refused"),
+     (2, "", "", "UNSAID"), (2, "", "depth: a depth is not a number", "UNSAID"),
+     (1, "", "Traceback (most recent call last)", "TRACEBACK"), (3, "", "budget", "not ended")],
+)  # fmt: skip
+def test_faults_are_told_from_refusals(code, out, err, told):
+    assert fuzz_keys.judged("impact", code, out, err) == told

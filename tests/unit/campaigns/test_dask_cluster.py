@@ -18,23 +18,20 @@ from made_processes import python
 
 comm = pytest.importorskip("distributed.comm")
 
-HEAD = """
+SCRIPT = """
 import os, signal, sys
-from dataclasses import replace
 from pathlib import Path
 from dentscope import fem
 from dentscope.campaigns import Design, run_design, standard_case
 from dentscope.campaigns.executor import DaskExecutor
-from dentscope.core import InputError, Material, Pair
+from dentscope.core import Material, Pair
 
-def made(n):
-    flat = Material(E=200e9, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
-    smoke = fem.Accuracy.smoke()
+def made():
+    flat, smoke = Material(E=200e9, nu=0.3, Sy=3e8), fem.Accuracy.smoke()
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(3)]
     return tuple(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke)
                  for i, p in enumerate(pairs))
-"""
-SCRIPT = f"""{HEAD}
+
 def main():
     from distributed import LocalCluster
     killed = []
@@ -45,7 +42,7 @@ def main():
             if not killed:
                 killed.append(next(iter(executor.client.run(os.getpid).values())))
                 os.kill(killed[0], signal.SIGKILL)
-        status = run_design(Design("dask", "", lambda: made(3)), Path(sys.argv[1]),
+        status = run_design(Design("dask", "", made), Path(sys.argv[1]),
                             executor=executor, time_limit_s=600.0, report=kill_one)
         print("KILLED", len(killed), "DONE", status.done, status.failed, status.missing, flush=True)
         os._exit(0)

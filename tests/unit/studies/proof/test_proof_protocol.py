@@ -69,7 +69,7 @@ def test_several_writers_leave_the_chain_whole(tmp_path):
     assert sorted(int(e["set"]) for e in seal.Ledger(path).events()) == list(range(60))
 
 
-def test_verdict_after_opening_is_refused(tmp_path, sealed):
+def test_verdict_after_opening_is_refused(sealed):
     ledger = seal.Ledger(sealed / "ledger.jsonl")
     open_run(sealed)
     ledger.add(**(ledger.of("verdict")["set-0000"] | {"cpu_s": 2.0}))
@@ -227,36 +227,28 @@ def test_inclusion_is_counted_mechanism_by_mechanism():
     assert calibrated.calibration_error(cases) == pytest.approx(0.5 * 0.1 + 0.5 * 0.4)
 
 
+def can(kind, change="ball at some speed", striker="ball", **trial):
+    given = {"change": change, "kind": kind, "trial": {"striker": striker, **trial}}
+    found = case("a", "null", [], {"next_experiment": given})
+    found.truth.update(strikers=["ball"], speeds=[0.5, 3.0], angles=[1.5708, 1.5708])
+    return score.feasible(found)
+
+
 def test_a_next_experiment_outside_the_rig_cannot_be_done():
-    def can(kind, speed, striker="ball", change="ball at some speed", angle=90.0):
-        trial = {"striker": striker, "speed_m_s": speed, "angle_deg": angle}
-        given = {"change": change, "kind": kind, "trial": trial}
-        found = case("a", "null", [], {"next_experiment": given})
-        found.truth.update(strikers=["ball"], speeds=[0.5, 3.0], angles=[1.5708, 1.5708])
-        return score.feasible(found)
-
-    assert can("trial", 2.0)
-    assert not can("trial", 12.0)
-    assert not can("trial", 2.0, "another")
-    assert not can("trial", 2.0, angle=45.0)
-    assert can("build", 2.0, "another", "build a ball like ball with a radius of 18 mm")
-    assert not can("build", 2.0, "another")
-    assert can("noise", 99.0)
-    assert can("weigh", 0.0)
-
-
-def test_a_press_needs_a_striker_of_the_rig_and_a_load_of_a_bench():
-    def can(load, striker="ball"):
-        given = {"change": "press it slowly", "kind": "press",
-                 "trial": {"striker": striker, "load_N": load, "repeats": 3.0}}  # fmt: skip
-        found = case("a", "null", [], {"next_experiment": given})
-        found.truth.update(strikers=["ball"])
-        return score.feasible(found)
-
-    assert can(880.0)
-    assert not can(880.0, "another")
-    assert not can(30e3)
-    assert not can(1.0)
+    shot = {"speed_m_s": 2.0, "angle_deg": 90.0}
+    assert can("trial", **shot)
+    assert not can("trial", speed_m_s=12.0, angle_deg=90.0)
+    assert not can("trial", striker="another", **shot)
+    assert not can("trial", speed_m_s=2.0, angle_deg=45.0)
+    assert can("build", "build a ball like ball with a radius of 18 mm", "another", **shot)
+    assert not can("build", striker="another", **shot)
+    assert can("noise", speed_m_s=99.0, angle_deg=90.0)
+    assert can("weigh", speed_m_s=0.0, angle_deg=90.0)
+    # a press needs a striker of the rig and a load of a bench
+    assert can("press", load_N=880.0, repeats=3.0)
+    assert not can("press", striker="another", load_N=880.0, repeats=3.0)
+    assert not can("press", load_N=30e3, repeats=3.0)
+    assert not can("press", load_N=1.0, repeats=3.0)
 
 
 def test_the_first_place_counts_if_the_truth_shows_there_nearly_most():
