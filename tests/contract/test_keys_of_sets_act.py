@@ -268,11 +268,6 @@ OF_AN_INVERSE = {
 }  # fmt: skip
 
 
-def merged(table, more):
-    found = {**table, **more}
-    return {k: v for k, v in found.items() if v is not None}
-
-
 def of_a_case(content, folder):
     (folder / "curve.csv").write_text("plastic_strain,stress_Pa\n0,3e8\n0.1,4e8\n1,5e8\n")
     file = put(folder / "SOLVED.toml", tomlkit.dumps(content))
@@ -287,7 +282,8 @@ def test_a_key_of_a_case_acts(key, tmp_path, capsys):
     if path[0] in ("sphere", "flat"):
         given, value = OF_A_BODY[".".join(path[1:])]
         for content in (before, after):
-            content[path[0]] = merged(content[path[0]], copy.deepcopy(given))
+            body = content[path[0]] | copy.deepcopy(given)
+            content[path[0]] = {k: v for k, v in body.items() if v is not None}
             if "rate" in given:
                 content["load"]["speed_m_s"] = 2.0
         if path[1] in ("rigid", "flow_curve"):

@@ -242,10 +242,6 @@ def impact_of(sphere: Material, flat: Material, speed: float) -> Scene:
     return scene.with_(instrument=replace(scene.instrument, scan_height=1e-9, scan_step=1e-6))
 
 
-def columns_of(rows):
-    return {name: rows[:, k] for k, name in enumerate(OBSERVABLES)}
-
-
 def test_every_mechanism_of_strength_is_held_to_this():
     assert set(UNIFORM) == set(STRENGTHS)
 
@@ -263,7 +259,9 @@ def test_a_constant_factor_is_a_pair_of_that_strength(name):
                 assert profile == pytest.approx(np.full(profile.shape, factor), rel=1e-6)
                 given.append(scene)
                 expected.append(impact_of(*bodies, speed))
-    seen, pair = (columns_of(strike_batch(s)) for s in (given, expected))
+    seen, pair = (
+        dict(zip(OBSERVABLES, strike_batch(s).T, strict=False)) for s in (given, expected)
+    )
     peak, dent = pair["peak_depth_m"], pair["residual_flat_m"]
     for key in ("restitution", "peak_force_N", "peak_depth_m", "contact_time_s"):
         assert seen[key] == pytest.approx(pair[key], rel=0.01), key
