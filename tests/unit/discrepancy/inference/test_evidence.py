@@ -31,11 +31,14 @@ def test_likelihood_is_scipys_multivariate_normal() -> None:
     assert Linear(noise, J).log_likelihood(r) == pytest.approx(expected, rel=1e-12)
 
 
-def test_unknowns_are_those_of_ridge_regression() -> None:
-    rng = np.random.default_rng(2)
-    J, r = rng.normal(size=(8, 3)), rng.normal(size=8)
-    mean, cov = Linear(np.eye(8), J).unknowns(r)
-    normal = J.T @ J + np.eye(3)
+@pytest.mark.parametrize("given", [{}, {"prior": np.array([1.0, 0.5, 3.0])}])
+def test_unknowns_are_those_of_ridge_regression_and_a_prior_scales_the_derivatives(given) -> None:
+    rng = np.random.default_rng(3)
+    J, r, prior = rng.normal(size=(8, 3)), rng.normal(size=8), given.get("prior", np.ones(3))
+    linear = Linear(np.eye(8), J, **given)
+    assert linear.log_likelihood(r) == pytest.approx(Linear(np.eye(8), J * prior).log_likelihood(r))
+    mean, cov = linear.unknowns(r)
+    normal = J.T @ J + np.diag(prior**-2.0)
     assert mean == pytest.approx(np.linalg.solve(normal, J.T @ r), rel=1e-10)
     assert cov == pytest.approx(np.linalg.inv(normal), rel=1e-9)
 
@@ -117,18 +120,6 @@ def test_evidence_of_a_flat_likelihood_is_its_height() -> None:
     evidence, weight = posterior(np.full(50, -3.0))
     assert evidence == pytest.approx(-3.0)
     assert math.isclose(weight.sum(), 1.0)
-
-
-def test_a_prior_is_a_scale_of_the_derivatives() -> None:
-    rng = np.random.default_rng(3)
-    J, r = rng.normal(size=(8, 3)), rng.normal(size=8)
-    prior = np.array([1.0, 0.5, 3.0])
-    wide = Linear(np.eye(8), J, prior=prior)
-    assert wide.log_likelihood(r) == pytest.approx(Linear(np.eye(8), J * prior).log_likelihood(r))
-    mean, cov = wide.unknowns(r)
-    normal = J.T @ J + np.diag(prior**-2.0)
-    assert mean == pytest.approx(np.linalg.solve(normal, J.T @ r), rel=1e-10)
-    assert cov == pytest.approx(np.linalg.inv(normal), rel=1e-9)
 
 
 def test_the_size_of_an_error_is_integrated_over() -> None:
