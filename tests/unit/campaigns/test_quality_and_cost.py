@@ -30,11 +30,14 @@ def curve(**changes):
     return {**made, **half, "energy_defect": np.full(48, 1e-4), **changes}
 
 
-def test_a_smooth_curve_has_no_step():
+def test_a_smooth_curve_has_no_step_and_one_bad_energy_balance_is_what_counts():
     found = quality_of(curve(), 1e-3)
     assert found.largest_step < 1e-9
     assert found.energy_defect == pytest.approx(1e-4)
     assert found.depth_reached == pytest.approx(0.1)
+    defect = np.full(48, 1e-4)
+    defect[7], defect[9] = -0.02, np.nan
+    assert quality_of(curve(energy_defect=defect), 1e-3).energy_defect == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize("name", ["force", "radius"])
@@ -56,12 +59,6 @@ def test_a_step_that_the_finer_solve_shows_too_does_not_count():
     assert force < 1e-9
     assert radius == pytest.approx(0.03, rel=0.02)
     assert share < 1e-9
-
-
-def test_one_bad_energy_balance_is_what_counts():
-    defect = np.full(48, 1e-4)
-    defect[7], defect[9] = -0.02, np.nan
-    assert quality_of(curve(energy_defect=defect), 1e-3).energy_defect == pytest.approx(0.02)
 
 
 def survey():

@@ -32,6 +32,7 @@ def test_force_of_a_half_sine() -> None:
     assert found["loading_time_s"] == pytest.approx(0.5 * T, rel=5e-3)
     # the foot of the recovery is drawn as Hertz's 3/2 power, so a sine's end comes out late
     assert found["contact_time_s"] == pytest.approx(T, rel=0.04)
+    assert from_trace(half_sine(9)) == {}  # too few samples
 
 
 def test_height_of_a_spring() -> None:
@@ -44,10 +45,6 @@ def test_height_of_a_spring() -> None:
     # a parabola through the lowest 40 % of a sine lies 0.3 % above its end
     assert found["peak_depth_m"] == pytest.approx(v / w, rel=4e-3)
     assert found["below_flat_s"] == pytest.approx(T, rel=1e-3)
-
-
-def test_too_few_samples_say_nothing() -> None:
-    assert from_trace(half_sine(9)) == {}
 
 
 def test_noise_goes_through_the_same_reduction() -> None:

@@ -43,24 +43,24 @@ def ranked(toy, library, data, derivative=None):
     return simulator, rank(simulator, mechanisms=library)
 
 
-def test_the_shape_that_made_the_data_comes_first(toy, library) -> None:
+def test_the_shape_that_made_the_data_comes_first_with_occams_evidence(toy, library) -> None:
     _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    lead = found.singles[0]
+    lead, size = found.singles[0], np.linalg.norm(RISING)
     assert lead.name == "rising"
     # known to 1/|shape| = 1/52 of its range: sharpened beyond the five nodes and 241 places
     assert lead.place[0] == pytest.approx(0.5, abs=2e-3)
     assert lead.chi2 < 0.1
-    assert [f.log_evidence for f in found.singles] == sorted(
-        (f.log_evidence for f in found.singles), reverse=True
-    )
-
-
-def test_evidence_of_a_well_known_size_is_occams(toy, library) -> None:
-    """A Gaussian likelihood of width s inside a flat prior: sqrt(2 pi) s times its height."""
-    _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    lead, size = found.singles[0], np.linalg.norm(RISING)
+    evidences = [f.log_evidence for f in found.singles]
+    assert evidences == sorted(evidences, reverse=True)
+    # a Gaussian likelihood of width s inside a flat prior: sqrt(2 pi) s times its height
     gain = 0.5 * (0.5 * size) ** 2 + np.log(np.sqrt(2.0 * np.pi) / size)
     assert lead.log_evidence - found.base.log_evidence == pytest.approx(gain, abs=0.02)
+    # what cannot act or be seen is excluded with its reason
+    assert found.excluded["ruled-out"] == "the bodies are of the wrong kind"
+    assert found.excluded["faint"].startswith(
+        "its largest plausible effect is 0.03 standard errors"
+    )
+    assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
 
 
 def test_what_has_no_name_is_kept_apart_with_its_evidence(toy, library) -> None:
@@ -91,15 +91,6 @@ def test_what_a_size_multiplies_may_be_off(toy) -> None:
     assert spreads[0] == pytest.approx(known, rel=0.1)
     off = 0.5 * np.expm1(0.1)
     assert spreads[1] == pytest.approx(np.hypot(known, off), rel=0.05)
-
-
-def test_what_cannot_act_or_be_seen_is_excluded_with_its_reason(toy, library) -> None:
-    _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    assert found.excluded["ruled-out"] == "the bodies are of the wrong kind"
-    assert found.excluded["faint"].startswith(
-        "its largest plausible effect is 0.03 standard errors"
-    )
-    assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
 
 
 def test_what_would_rest_on_an_assumed_modulus_is_excluded(toy, library) -> None:

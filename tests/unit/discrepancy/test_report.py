@@ -114,15 +114,11 @@ def test_a_place_under_an_all_clear_says_why() -> None:
     assert nowhere(said("missing-physics", 0.02, seen)) == ""
 
 
-def test_too_few_numbers_may_still_miss_something() -> None:
+def test_undetermined_says_what_leads_or_that_the_data_are_too_few() -> None:
     few = ("too few: only 4 readings to compare, 6 are needed",)
     told = headline(said("undetermined", 0.001, reasons=few))
     assert told == "Something is missing (more than 99 %), but too few data to say what."
-    told = headline(said("undetermined", 0.4, reasons=few))
-    assert told == "Too few data to say."
-
-
-def test_undetermined_says_what_leads() -> None:
+    assert headline(said("undetermined", 0.4, reasons=few)) == "Too few data to say."
     told = headline(said("undetermined", 0.32))
     assert "nothing is missing 32 %" in told
     assert "68 %" in told

@@ -52,9 +52,7 @@ def test_information_ends_at_the_entropy_and_begins_at_nothing() -> None:
     # small gaps: p (1 - p) D by the expansion, with D over twice the one variance
     near = information([of_one(0.0, 1.0), of_one(0.2, 1.0)], [0.5, 0.5])
     assert near == pytest.approx(0.25 * 0.2**2 / 2.0, rel=0.05)
-
-
-def test_rivals_without_probability_tell_nothing() -> None:
+    # rivals without probability tell nothing
     one, two = of_one(0.0, 1.0), of_one(50.0, 1.0)
     assert information([one, two], [0.0, 0.0]) == 0.0
     assert information([one, two], [1.0, 0.0]) == 0.0

@@ -218,20 +218,16 @@ def test_whole_steps_swing_and_tried_ones_arrive(bench) -> None:
     assert abs(tried[0]) < 0.2 * abs(whole[0])
 
 
-def test_a_step_that_fits_worse_is_not_gone(bench) -> None:
-    z = np.array([1e-4])
-    found = replace(expanded(bench, z), z=np.array([-1.5]))
-    after, place, settled = tried_steps(bench, found, z, NOWHERE)
-    assert after == pytest.approx(z)
+@pytest.mark.parametrize(("start", "to", "gone"), [(1e-4, -1.5, 1e-4), (0.2, 0.1, 0.1)])
+def test_a_step_that_fits_worse_is_not_gone_and_one_that_hardly_matters_ends_the_fit(
+    bench, start, to, gone
+) -> None:
+    z = np.array([start])
+    after, place, settled = tried_steps(
+        bench, replace(expanded(bench, z), z=np.array([to])), z, NOWHERE
+    )
+    assert after == pytest.approx([gone])
     assert place.size == 0
-    assert settled
-
-
-def test_a_step_within_what_matters_ends_the_fit(bench) -> None:
-    z = np.array([0.2])
-    found = replace(expanded(bench, z), z=np.array([0.1]))
-    after, _, settled = tried_steps(bench, found, z, NOWHERE)
-    assert after == pytest.approx([0.1])
     assert settled
 
 
