@@ -363,11 +363,8 @@ def test_a_metals_curve_is_looked_for_by_eight_presses_of_each_striker(toy, monk
     assert found.cells.std[1:3].tolist() == [0.02, 0.01]
 
 
-def test_without_curves_at_several_rates_the_rate_has_its_priors() -> None:
+def test_curves_at_several_rates_narrow_the_rise_that_otherwise_has_its_prior() -> None:
     assert rate_prior(()).tolist() == [[0.4, 0.35], [0.15, 0.08], [0.87, 0.08]]
-
-
-def test_curves_at_several_rates_narrow_the_rise() -> None:
     rise, exponent, kept = rate_prior(((1000.0, 1.5),))
     # within a tenth, what two specimens of one metal differ by
     assert rise == pytest.approx([np.log(1.5), 0.096], abs=0.01)

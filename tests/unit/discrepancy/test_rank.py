@@ -261,20 +261,19 @@ def test_only_what_varies_is_a_covariate(toy, located) -> None:
     assert found["impact speed"] == pytest.approx(np.array([-3.0, -1.0, 1.0, 3.0]) / np.sqrt(5.0))
 
 
-def test_a_miss_everywhere_is_a_miss_overall(located) -> None:
-    (miss,) = located([3.0, 3.0, 3.0, 3.0]).misses
-    # the sum over the square root of their number
-    assert (miss.covariate, miss.trend) == ("overall", "recordings lie above the simulation")
-    assert miss.z == pytest.approx(6.0, rel=0.05)
-    (below,) = located([-3.0, -3.0, -3.0, -3.0]).misses
-    assert below.trend == "recordings lie below it"
-
-
-def test_a_slope_is_a_miss_along_its_condition(located) -> None:
-    (miss,) = located([-3.0, -1.0, 1.0, 3.0]).misses
-    assert miss.covariate == "impact speed"
-    assert miss.trend == "recording over simulation rises with impact speed"
-    assert miss.z == pytest.approx(np.sqrt(20.0), rel=0.05)
+@pytest.mark.parametrize(
+    ("residual", "covariate", "trend", "z"),
+    [   # the sum over the square root of their number
+        ([3.0] * 4, "overall", "recordings lie above the simulation", 6.0),
+        ([-3.0] * 4, "overall", "recordings lie below it", -6.0),
+        ([-3.0, -1.0, 1.0, 3.0], "impact speed",
+         "recording over simulation rises with impact speed", math.sqrt(20.0)),
+    ],
+)  # fmt: skip
+def test_a_miss_is_along_the_condition_that_it_follows(located, residual, covariate, trend, z):
+    (miss,) = located(residual).misses
+    assert (miss.covariate, miss.trend) == (covariate, trend)
+    assert miss.z == pytest.approx(z, rel=0.05)
     assert miss.phase == "free-flight"
 
 

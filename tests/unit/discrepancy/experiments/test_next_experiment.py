@@ -96,19 +96,15 @@ def on_rig(toy, **strikers):
     return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=toy.rig_of(**strikers))
 
 
-def test_trials_lie_within_the_rigs_speeds(toy) -> None:
-    given = on_rig(toy, ball=BALL)
-    found = candidates_of(given)
-    assert found
-    assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
-    assert all(c.condition.angle == math.pi / 2.0 for c in found)
-
-
 def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(toy) -> None:
     """Half and 2 m/s are tested; devices D and G know one speed each, as rebound testers do."""
     given = on_rig(toy, ball=BALL)
-    own = [c.condition.speed for c in candidates_of(given)]
+    found = candidates_of(given)
+    own = [c.condition.speed for c in found]
     assert own == pytest.approx([2.0**-0.5, 1.0, 2.0**0.5])
+    assert all(c.condition.angle == math.pi / 2.0 for c in found)
+    # within the rig's speeds
+    assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
     assert [given.conditions[k].speed for k in again(given)] == [0.5, 2.0]
     devices = [toy.condition(2.0, "D"), toy.condition(3.0, "G")]
     shot = replace(on_rig(toy, D=BALL, G=BALL), conditions=tuple(devices))
