@@ -287,7 +287,9 @@ def test_state_needs_the_whole_interval():
 
 
 def tilted(name, size, verdict, kind="single"):
-    return case(name, kind, ["tilt"], verdict, size)
+    found = case(name, kind, ["tilt"], verdict, size)
+    found.truth["effects"] = []
+    return found
 
 
 TILT = {"verdict": "missing-physics", "mechanisms": ["tilt"]}
