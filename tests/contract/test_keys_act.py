@@ -1,17 +1,28 @@
-"""Every key of an impact acts on what is printed or written, or is refused in one line."""
+"""Every key of an impact and every option of every command acts, or is refused in one line."""
 
+import ast
+import inspect
+import textwrap
 import tomllib
 from dataclasses import asdict
+from functools import cache
+from pathlib import Path
 
+import dentscope.reduce
 import made_blows
 import pytest
 import tomlkit
+import typer.main
+from dentscope.cli import run
+from dentscope.cli.app import app
 from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError, InputErrors
+from dentscope.core.inputs.templates import CASE, INVERSE, template
 from dentscope.dynamics.files.blow import blow_of
 from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import law_named
+from dentscope.reduce.output.row import Row
 from dentscope.start.ball_file import read_ball
 
 BALL = 'name = "ball"\n' + made_blows.BALL.replace("7870", "7870\nthickness_m = 0.03").replace(
@@ -35,6 +46,7 @@ LUDWIK, JOHNSON, VOCE = (
     '{ law = "voce", Q_Pa = %s, b = %s }',
 )
 QUANTITY = "{ value = %s, std = %s }"
+BODIES = ("[target]", "[strikers.NAME]")
 
 ACTS = {
     ("", "name"): (BALL, '"other"'),
@@ -44,10 +56,9 @@ ACTS = {
     ("", "licence"): (BALL, '"CC0"'),
     ("", "gravity_m_s2"): (BALL, "300"),
     ("[target]", "material"): (BALL, '"iron"'),
-    ("[target]", "E_Pa"): (BALL, "1e11"),
-    ("[target]", "nu"): (BALL, "0.25"),
-    ("[target]", "Sy_Pa"): (BALL, "2e8"),
-    ("[target]", "density_kg_m3"): (BALL, "3000"),
+    **{(body, name): (BALL, value) for body in BODIES
+       for name, value in (("E_Pa", "1e11"), ("nu", "0.25"), ("Sy_Pa", "2e8"),
+                           ("density_kg_m3", "3000"))},
     ("[target]", "rigid"): (BARE.replace("[target]\nE_Pa = 2.0e11\nnu = 0.3", "[target]"), "true"),
     ("[target]", "hardness_Pa"): (BARE, "9e8"),
     ("[target]", "thickness_m"): (BALL, "0.002"),
@@ -67,10 +78,6 @@ ACTS = {
     ("[target.hardening]", "n"): (BARE, LUDWIK % ("5e8", "0.3"), LUDWIK % ("5e8", "0.2")),
     ("[target.hardening]", "b"): (BARE, VOCE % ("2e8", "9.0"), VOCE % ("2e8", "5.0")),
     ("[strikers.NAME]", "material"): (BALL, '"steel"'),
-    ("[strikers.NAME]", "E_Pa"): (BALL, "1e11"),
-    ("[strikers.NAME]", "nu"): (BALL, "0.25"),
-    ("[strikers.NAME]", "Sy_Pa"): (BALL, "2e8"),
-    ("[strikers.NAME]", "density_kg_m3"): (BALL, "3000"),
     ("[strikers.NAME]", "rigid"): (BALL.replace("""
 tip_radius_m = 0.005
 E_Pa = 2.0e11
@@ -155,15 +162,12 @@ ACTS |= {
     (f"[mechanisms.{m.name}]", p.name): _moving(m, p) for m in MECHANISMS for p in m.parameters
 }
 READ = {
-    ("[target]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
-    ("[strikers.NAME]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
+    **{(b, "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6") for b in BODIES},
     ("[target]", "layer_thickness_m"): (BALL + "[mechanisms.hardened-layer]\n", "1e-4", "4e-4"),
-    **{("[target]", name): (HOT + "[mechanisms.thermal-softening]\n", *two)
-       for name, two in (("cp_J_kgK", ("400", "900")), ("melting_K", ("900", "1800")))},
-    ("[impact]", "temperature_K"): (HOT + "[mechanisms.thermal-softening]\n", "600", "700"),
-    ("[environment]", "temperature_K"): (
-        HOT + "[mechanisms.thermal-softening]\n", "293", "350",
-    ),
+    **{place: (HOT + "[mechanisms.thermal-softening]\n", *two) for place, two in (
+        (("[target]", "cp_J_kgK"), ("400", "900")), (("[target]", "melting_K"), ("900", "1800")),
+        (("[impact]", "temperature_K"), ("600", "700")),
+        (("[environment]", "temperature_K"), ("293", "350")))},
     ("[environment]", "fluid"): (LIGHT + "[mechanisms.air-drag]\n", '"air"', '"oil"'),
     **{("[environment]", name): (LIGHT + "[mechanisms.air-drag]\n", *two)
        for name, two in (("density_kg_m3", ("1.0", "1.3")), ("pressure_Pa", ("5e4", "1e5")),
@@ -171,10 +175,9 @@ READ = {
 }  # fmt: skip
 """What a mechanism alone reads, and with which it acts."""
 REFUSED = {
-    **dict.fromkeys([("", "noise")], "{ restitution = 0.01 }"),
-    **{(t, "Ra_m"): "1e-6" for t in ("[target]", "[strikers.NAME]")},
-    **{(t, "cp_J_kgK"): "460" for t in ("[target]", "[strikers.NAME]")},
-    **{(t, "melting_K"): "1800" for t in ("[target]", "[strikers.NAME]")},
+    ("", "noise"): "{ restitution = 0.01 }",
+    **{(body, name): value for body in BODIES
+       for name, value in (("Ra_m", "1e-6"), ("cp_J_kgK", "460"), ("melting_K", "1800"))},
     ("", "gauge"): "{ permanent_depth_m = 0.02 }",
     ("", "dent_edge"): '"rim"',
     ("[target]", "layer_thickness_m"): "1e-4",
@@ -184,11 +187,8 @@ REFUSED = {
     ("[environment]", "pressure_Pa"): "1e5",
     ("[environment]", "temperature_K"): "293",
     ("[impact]", "temperature_K"): "400",
-}
-ONE = {
-    ("[impact]", "striker"), ("[target]", "flow_curve"),
-    ("[strikers.NAME]", "flow_curve"),
 }  # fmt: skip
+ONE = {("[impact]", "striker"), *((body, "flow_curve") for body in BODIES)}
 """One choice alone; and what a test of its own looks at, with a file beside."""
 _TEXTS = ("name", "format", "description", "source", "licence", "material")
 TWIN = "[strikers.NAME.hardening]"
@@ -354,3 +354,103 @@ def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_p
             told.append(str(error))
     refused = "a rod" in told[0] or "a second sphere" in told[0]
     assert told[0] != told[1] or refused
+
+
+def commands(command, name=""):
+    context = command.context_class(command)
+    for last in getattr(command, "list_commands", lambda _: ())(context):
+        found = command.get_command(context, last)
+        yield from commands(found, f"{name} {last}".strip())
+    if not hasattr(command, "list_commands"):
+        yield name, command
+
+
+COMMANDS = dict(commands(typer.main.get_command(app)))
+
+
+@cache
+def read_by_reductions():
+    folder = Path(inspect.getfile(dentscope.reduce)).parent
+    return {
+        node.attr
+        for file in folder.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load)
+    }
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_reads_every_option(name):
+    work = inspect.unwrap(COMMANDS[name].callback)
+    tree = ast.parse(textwrap.dedent(inspect.getsource(work)))
+    read = {
+        node.id for node in ast.walk(tree)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    }  # fmt: skip
+    known = set(inspect.signature(COMMANDS[name].callback).parameters)
+    if name.startswith("reduce "):
+        read |= read_by_reductions() | set(Row.model_fields)  # the row: a column of trials.csv each
+    assert [p.name for p in COMMANDS[name].params if p.name in known - read] == []
+
+
+@pytest.mark.parametrize(
+    ("line", "option"),
+    [
+        ("impact --new ball --law hertz", "--law"),
+        ("impact --new ball --exact", "--exact"),
+        ("case --new --picture", "--picture"),
+        ("inverse --new --out some", "--out"),
+        ("fit --judge some --only hardening", "--only"),
+        ("fit some --judge some", "CAMPAIGNS"),
+        ("verify --list --quick", "--quick"),
+        ("verify --list --only patch", "--only"),
+        ("campaign run --scheduler tcp://nowhere:1 --workers 2", "--workers"),
+    ],
+)
+def test_what_does_nothing_beside_another_option_is_refused(line, option, errs):
+    (told,) = errs(*line.split()).splitlines()
+    assert f"{option}: does nothing" in told
+
+
+USES = (
+    ("impact ball.toml --law fitted --exact", "impact ball.toml --law hertz --exact"),
+    ("impact ball.toml --law fitted --exact", "impact ball.toml --law fitted"),
+    ("impact --new ball new.toml", "impact --new rod new.toml"),
+    ("case --new new.toml", "case --new other.toml"),
+    ("inverse --new new.toml", "inverse --new other.toml"),
+    ("inverse inverse.toml --out one", "inverse inverse.toml --out two"),
+    ("laws compare case.toml --law hertz", "laws compare case.toml --law fitted"),
+    ("laws compare case.toml --law hertz", "laws compare case.toml --law hertz --out two"),
+    ("laws show hertz", "laws show fitted"),
+    ("export dem case.toml --speed 1", "export dem case.toml --speed 2"),
+    ("export dem case.toml --speed 1", "export dem case.toml --speed 1 --mass 1e-3"),
+    ("export dem case.toml --speed 1", "export dem case.toml --speed 1 --law thornton"),
+    ("export dem case.toml --speed 1", "export dem case.toml --speed 1 --out two"),
+    ("export law fitted", "export law compact"),
+    ("keys case", "keys inverse"),
+    ("materials steel-1010-hot-rolled", "materials steel-1018-hot-rolled"),
+    ("recordings new one", "recordings new one --rod"),
+    ("recordings check kharaz-2001-oblique", "recordings check thesis-chapter-4"),
+    ("recordings audit kharaz-2001-oblique", "recordings audit kharaz-2001-oblique --all"),
+    ("examples --to one", "examples --to two"),
+)
+"""Two uses that differ in an option or an argument, of the commands that are quick."""
+
+
+@pytest.mark.parametrize(("one", "other"), USES, ids=lambda line: line)
+def test_an_option_changes_what_is_printed_or_written(one, other, tmp_path, monkeypatch, capsys):
+    told = []
+    for number, line in enumerate((one, other)):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        (folder / "ball.toml").write_text(template("ball").partition("[sweep]")[0])
+        (folder / "case.toml").write_text(CASE)
+        (folder / "inverse.toml").write_text(INVERSE)
+        monkeypatch.chdir(folder)
+        assert run(line.split()) == 0
+        files = {
+            str(p.relative_to(folder)): p.read_bytes()
+            for p in folder.rglob("*") if p.is_file() and p.suffix != ".h5"
+        }  # fmt: skip
+        told.append((capsys.readouterr().out, files))
+    assert told[0] != told[1]

@@ -1,13 +1,14 @@
-"""What every contact law keeps, and anchors from outside for each."""
+"""What every contact law and every joined pair of laws keeps, and anchors from outside."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from dentscope.campaigns.cases.pairs import table_2_1
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, critical_depth
-from dentscope.models.base import CLAUSES
+from dentscope.models.base import CLAUSES, unwarned
 from dentscope.models.table import LoadingCurve, PairTable, Turns, table_law
 
 # the clauses hold beyond the data that a law was fitted to, too
@@ -193,20 +194,87 @@ def test_jackson_green_joins_hertz_at_w_1_9_within_half_a_percent():
     assert 5e-4 < abs(float(above / below) - 1.0) < 7e-3
 
 
-def table_2_1_pair(number, ratio):
-    E_s, E_f, Sy, nu_s = {
-        1: (200e9, 200e9, 200e6, 0.30), 3: (71.7e9, 200e9, 300e6, 0.33),
-        4: (71.7e9, 200e9, 503e6, 0.30), 5: (200e9, 200e9, 503e6, 0.33),
-    }[number]  # fmt: skip
-    s, f = (Sy, Sy / ratio) if ratio < 1.0 else (Sy * ratio, Sy)
-    return Pair(Material(E=E_s, nu=nu_s, Sy=s), Material(E=E_f, nu=0.3, Sy=f), 1e-3)
-
-
 @pytest.mark.parametrize(
     ("number", "ratio", "radius_mm"),
     [(1, 0.1, 0.314), (1, 10.0, 0.317), (3, 1.0, 0.287), (4, 1.08, 0.254), (5, 10.0, 0.305)],
 )
 def test_the_thesis_model_gives_the_radii_of_its_figures(number, ratio, radius_mm):
     """Contact radius at Delta/R = 0.04, worked out in the equation audit for R = 1 mm."""
-    a = LAWS["ghaednia"].contact_radius(table_2_1_pair(number, ratio), 0.04e-3)
+    a = LAWS["ghaednia"].contact_radius(table_2_1(number, ratio), 0.04e-3)
     assert float(a) * 1e3 == pytest.approx(radius_mm, abs=0.0016)
+
+
+OPPOSITE = {name: PAIRS[name] for name in ("flattening", "indentation")}
+# combinations that the thesis uses: chapter 3's updated models, 4.2.4's Ye-Komvopoulos
+NAMED = (
+    ("jackson-green-2007", "ghaednia"),
+    ("kogut-etsion", "ghaednia"),
+    ("kogut-komvopoulos", "ghaednia"),
+    ("ye-komvopoulos", "jackson-green"),
+)
+
+
+@pytest.mark.parametrize("pair", OPPOSITE.values(), ids=OPPOSITE)
+@pytest.mark.parametrize("loading", LAWS)
+def test_a_combination_unloads_from_its_peak_to_its_residual_depth(loading, pair):
+    names = list(LAWS)
+    # each law meets three others; all combinations at once would be compiled for two minutes
+    for step in (1, 5, 11):
+        other = names[(names.index(loading) + step) % len(names)]
+        law = LAWS[loading].with_unloading(LAWS[other])
+        for peak in (3.0 * critical_depth(pair), 0.01 * pair.R):
+            left = float(sum(law.residual(pair, peak)))
+            assert left == float(sum(LAWS[other].residual(pair, peak))), other
+            assert 0.0 <= left < peak, other
+            top = LAWS[loading].loading(pair, peak)
+            assert law.loading(pair, peak) == top, other
+            assert law.unloading(pair, peak, peak) == pytest.approx(top, rel=1e-12), other
+            force = law.unloading(pair, np.linspace(left, peak, 60), peak)
+            assert np.isfinite(force).all(), other
+            assert np.all(np.diff(force) >= -1e-12 * float(top)), other
+            if left > 0.0:
+                assert law.unloading(pair, 0.9 * left, peak) == 0.0, other
+
+
+@pytest.mark.parametrize("pair", OPPOSITE.values(), ids=OPPOSITE)
+@pytest.mark.parametrize(("loading", "other"), NAMED, ids="+".join)
+def test_no_cycle_of_the_thesis_combinations_creates_energy(loading, other, pair):
+    law = LAWS[loading].with_unloading(LAWS[other])
+    y = np.linspace(0.0, 1.0, 4001)
+    for times in (2.0, 8.0, 30.0, 110.0):
+        peak = times * critical_depth(pair)
+        d = peak * y**2
+        spent = np.trapezoid(law.loading(pair, d), d)
+        left = float(sum(law.residual(pair, peak)))
+        back = left + (peak - left) * y**2
+        assert np.trapezoid(law.unloading(pair, back, peak), back) <= spent * (1.0 + 1.5e-3)
+
+
+def test_a_law_of_ones_own_that_is_written_anew_under_its_name_is_joined_anew():
+    # a notebook's cell, run twice: the second time with another law
+    pair, depth = Pair(STEEL, SOFT, 1e-3), 2e-5
+    for like in ("hertz", "jackson-green"):
+        own = replace(LAWS[like], name="mine")
+        joined = own.with_unloading(LAWS["hertz"]).loading(pair, depth)
+        assert joined == LAWS[like].loading(pair, depth)
+
+
+def test_depths_and_peaks_are_broadcast_and_a_peak_is_a_number():
+    law, pair = LAWS["compact"], Pair(STEEL, SOFT, 1e-3)
+    depths, peaks = np.array([[5e-6], [1e-5], [2e-5]]), np.array([1e-5, 4e-5])
+    found = law.unloading(pair, depths, peaks)
+    each = [[law.unloading(pair, d, p) for p in peaks] for d in depths[:, 0]]
+    assert found == pytest.approx(np.array(each), rel=1e-14)
+    with pytest.raises(InputError, match="a peak is not a number"):
+        law.unloading(pair, depths, np.nan)
+
+
+def test_a_depth_at_which_a_law_has_no_number_is_refused():
+    iron = Material(E=200e9, nu=0.3, Sy=300e6)
+    law, pair = LAWS["fitted"], Pair(iron.with_(Sy=750e6), iron, 1e-2)
+    told = r"depth: 20 m, 2e\+03 radii: .* \(allowed: a part of the radius, 0.01 m\)"
+    for asked in (law.loading, law.residual, law.hardness):
+        with unwarned(), pytest.raises(InputError, match=told):
+            asked(pair, [1e-5, 20.0])
+    with pytest.raises(InputError, match=told):
+        law.unloading(pair, 1e-5, 20.0)

@@ -13,8 +13,10 @@ from pathlib import Path
 import grimp
 import numpy as np
 import pytest
+from dentscope.campaigns import read_curves
 from dentscope.cli import studies
 from dentscope.core.inputs.added import READERS, names_added
+from dentscope.models.coefficients import drawn_from
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
@@ -224,7 +226,7 @@ def test_the_version_is_the_same_wherever_it_stands():
     assert heads[0][1] == version
 
 
-LEDGER = runpy.run_path(str(Path(__file__).resolve().parents[2] / "tools" / "ledger.py"))
+LEDGER = runpy.run_path(str(ROOT / "tools" / "ledger.py"))
 SIZE = {"lines": 150.0, "code": 100.0, "modules": 50.0, "numbers": 10.0, "words": 0.0}
 
 
@@ -298,9 +300,6 @@ def test_the_coefficients_come_from_published_parts():
 
 
 def test_the_challenge_was_drawn_from_these_coefficients():
-    from dentscope.campaigns import read_curves
-    from dentscope.models.coefficients import drawn_from
-
     fitted = drawn_from()
     names = [
         r.case.name

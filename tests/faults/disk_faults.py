@@ -15,6 +15,7 @@ import tempfile
 from collections import Counter
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from unittest import mock
 
@@ -143,16 +144,21 @@ class Writer:
     check: object
 
 
+def tried(writer, folder, *, every):
+    """Lay the beginning out anew for each call, or each few, that something happens to."""
+    for at in count(1, every):
+        place = folder / str(at)
+        place.mkdir(parents=True)
+        writer.begin(place)
+        yield at, place
+        shutil.rmtree(place)
+
+
 def faults(writer, folder, *, codes=(errno.ENOSPC, errno.EIO), every=1):
     """Let each call (or each few) fail in turn; return how often each did."""
     counts = Counter()
     for code in codes:
-        at = 1 - every
-        while True:
-            at += every
-            place = folder / f"{code}-{at}"
-            place.mkdir(parents=True)
-            writer.begin(place)
+        for at, place in tried(writer, folder / str(code), every=every):
             fault, refused = Faulty(at, code), None
             with patched(fault):
                 try:
@@ -167,21 +173,14 @@ def faults(writer, folder, *, codes=(errno.ENOSPC, errno.EIO), every=1):
             writer.check(place)
             writer.act(place)  # with room again
             assert writer.check(place) == "new"
-            shutil.rmtree(place)
     return counts
 
 
 def losses(writer, folder, *, every=1):
     """Lose power after each call in turn; return how often each state of the disk was looked at."""
     counts = Counter()
-    at = 1 - every
-    while True:
-        at += every
-        place = folder / f"power-{at}"
-        place.mkdir(parents=True)
-        writer.begin(place)
-        power = Powered(place, at)
-        lost = False
+    for at, place in tried(writer, folder, every=every):
+        power, lost = Powered(place, at), False
         with patched(power):
             try:
                 writer.act(place)
@@ -196,7 +195,6 @@ def losses(writer, folder, *, every=1):
             writer.act(place)  # the next run
             assert writer.check(place) == "new", (writer.name, at, words)
             counts["power lost: " + words] += 1
-        shutil.rmtree(place)
         if not lost:
             return counts
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Literal, get_args, get_origin
 
 import numpy as np
-from made_records import tracker_project
+from made_records import tracker_project, workbook
 
 UNITS = (b"mm", b"um", b"kN", b"furlong", b"m/s2", b"g", b"%", b"V", b"px", b"MPa", b"ms", b"")
 TEXTS = (
@@ -56,9 +56,7 @@ def _markers(end):
     points = np.ones((4, 3, t.size))
     points[:3] = np.array(places).reshape(3, 3, -1).transpose(1, 0, 2)
     made["data"]["points"] = points
-    with tempfile.TemporaryDirectory() as folder:
-        made.write(str(Path(folder) / "a.c3d"))
-        return (Path(folder) / "a.c3d").read_bytes()
+    return _written(lambda path: made.write(str(path)), "a.c3d")
 
 
 def _frames():
@@ -69,12 +67,17 @@ def _frames():
     return np.clip(25.0 + 200.0 * np.array(discs) + noise, 0, 255).astype(np.uint8)
 
 
+def _written(write, name):
+    """The bytes of a file that `write` makes at a path."""
+    with tempfile.TemporaryDirectory() as folder:
+        write(Path(folder) / name)
+        return (Path(folder) / name).read_bytes()
+
+
 def _video():
     from dentscope.studies.synthetic.clips import write_video
 
-    with tempfile.TemporaryDirectory() as folder:
-        write_video(_frames(), Path(folder) / "a.avi")
-        return (Path(folder) / "a.avi").read_bytes()
+    return _written(lambda path: write_video(_frames(), path), "a.avi")
 
 
 def _stack():
@@ -123,10 +126,7 @@ def _surface(end):
     from SurfaceTopography import Topography
 
     made = Topography(_crater(), physical_sizes=(4.8e-4, 4.8e-4), unit="m")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"a{end}"
-        made.to_netcdf(path) if end == ".nc" else made.to_matrix(path)
-        return path.read_bytes()
+    return _written(made.to_netcdf if end == ".nc" else made.to_matrix, f"a{end}")
 
 
 def _sound():
@@ -162,15 +162,8 @@ def _tension():
 
 
 def _book():
-    import openpyxl
-
-    book = openpyxl.Workbook()
-    book.active.append(["time_s", "force_N"])
-    for row in zip(*_pulse(), strict=True):
-        book.active.append([float(v) for v in row])
-    out = io.BytesIO()
-    book.save(out)
-    return out.getvalue()
+    rows = [["time_s", "force_N"], *np.transpose(_pulse()).tolist()]
+    return _written(lambda path: workbook(path, rows), "a.xlsx")
 
 
 def _pressed():

@@ -149,11 +149,8 @@ def shipped_set(name, folder):
 
 def _pending():
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder)
-        for name, make in WHOLE.items():
-            (place / name).parent.mkdir(exist_ok=True)
-            (place / name).write_bytes(make())
-        return pending(place, {"trials.csv": TRIALS + b"g,rod,90,0.2,,0.5,,\n"})
+        lay_out(in_set("trials.csv"), TRIALS, Path(folder))
+        return pending(Path(folder), {"trials.csv": TRIALS + b"g,rod,90,0.2,,0.5,,\n"})
 
 
 def _other_pending(content, draw):
@@ -223,8 +220,8 @@ def _published():
         return {"case.h5": case, "trial-1.h5": part, CHECKSUMS: sums}
 
 
-def of_campaign(name):
-    return _published()[name]
+def of_campaign(name, change):
+    return Reader(name, lambda: _published()[name], read_curves, {}, change)
 
 
 def _broken_seal(content, draw):
@@ -273,14 +270,8 @@ READERS = {
     "fetch.toml": Reader(
         "fetch.toml", partial(_data, "data", "recordings", "fetch.toml"), read_catalogue
     ),
-    "case's file": Reader(
-        "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, _broken_seal
-    ),
-    "case's values": Reader(
-        "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, tampered
-    ),
-    "part's values": Reader(
-        "trial-1.h5", partial(of_campaign, "trial-1.h5"), read_curves, {}, tampered
-    ),
+    "case's file": of_campaign("case.h5", _broken_seal),
+    "case's values": of_campaign("case.h5", tampered),
+    "part's values": of_campaign("trial-1.h5", tampered),
 }  # fmt: skip
 RAW = {name: raw(name) for name in raw_files.FILES}

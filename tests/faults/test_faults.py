@@ -2,12 +2,13 @@
 
 import errno
 import hashlib
-import importlib.util
 import json
 import os
 import re
+import runpy
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import disk_faults
 import fuzz
@@ -120,11 +121,7 @@ def test_everything_is_written_by_the_one_writer():
     assert [one for one in found if not any(word in one for word in allowed)] == []
 
 
-_FILE = Path(__file__).parents[2] / "tools" / "benchmarks" / "fuzz_keys.py"
-_SPEC = importlib.util.spec_from_file_location("fuzz_keys", _FILE)
-fuzz_keys = importlib.util.module_from_spec(_SPEC)
-_SPEC.loader.exec_module(fuzz_keys)
-
+fuzz_keys = SimpleNamespace(**runpy.run_path(str(ROOT / "tools" / "benchmarks" / "fuzz_keys.py")))
 QUICK = ("inverse", "case", "recordings", "export")
 
 
@@ -141,16 +138,11 @@ def test_an_extreme_file_is_answered_or_refused(number):
 
 
 @pytest.mark.parametrize(
-    ("out", "told"),
-    [("a  nan", "NAN"), ("e = inf", "NAN"), ("banana infinite", "answered"), ("0.5", "answered")],
-)
-def test_a_nan_with_exit_code_0_is_a_fault(out, told):
-    assert fuzz_keys.judged("impact", 0, out, "") == told
-
-
-def test_faults_are_told_from_refusals():
-    assert fuzz_keys.judged("impact", 2, "", "a.toml: target.nu: 0.7\n") == "refused"
-    assert fuzz_keys.judged("impact", 2, "", "") == "UNSAID"
-    assert fuzz_keys.judged("impact", 2, "", "depth: a depth is not a number") == "UNSAID"
-    assert fuzz_keys.judged("impact", 1, "", "Traceback (most recent call last)") == "TRACEBACK"
-    assert fuzz_keys.judged("impact", 3, "", "budget") == "not ended"
+    ("code", "out", "err", "told"),
+    [(0, "a  nan", "", "NAN"), (0, "e = inf", "", "NAN"), (0, "banana infinite", "", "answered"),
+     (0, "0.5", "", "answered"), (2, "", "a.toml: target.nu: 0.7\n", "refused"),
+     (2, "", "", "UNSAID"), (2, "", "depth: a depth is not a number", "UNSAID"),
+     (1, "", "Traceback (most recent call last)", "TRACEBACK"), (3, "", "budget", "not ended")],
+)  # fmt: skip
+def test_faults_are_told_from_refusals(code, out, err, told):
+    assert fuzz_keys.judged("impact", code, out, err) == told

@@ -1,18 +1,14 @@
 """Six finite-element curves that may not move unnoticed; see regenerate.py."""
 
-import importlib.util
 import json
+import runpy
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from dentscope import fem
 
-_spec = importlib.util.spec_from_file_location(
-    "golden_regenerate", Path(__file__).with_name("regenerate.py")
-)
-golden = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(golden)
-
+golden = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name("regenerate.py"))))
 KNOWN = json.loads(golden.FILE.read_text())
 pytestmark = pytest.mark.fe
 

@@ -18,23 +18,20 @@ from made_processes import python
 
 comm = pytest.importorskip("distributed.comm")
 
-HEAD = """
+SCRIPT = """
 import os, signal, sys
-from dataclasses import replace
 from pathlib import Path
 from dentscope import fem
 from dentscope.campaigns import Design, run_design, standard_case
 from dentscope.campaigns.executor import DaskExecutor
-from dentscope.core import InputError, Material, Pair
+from dentscope.core import Material, Pair
 
-def made(n):
-    flat = Material(E=200e9, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
-    smoke = fem.Accuracy.smoke()
+def made():
+    flat, smoke = Material(E=200e9, nu=0.3, Sy=3e8), fem.Accuracy.smoke()
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(3)]
     return tuple(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke)
                  for i, p in enumerate(pairs))
-"""
-SCRIPT = f"""{HEAD}
+
 def main():
     from distributed import LocalCluster
     killed = []
@@ -45,7 +42,7 @@ def main():
             if not killed:
                 killed.append(next(iter(executor.client.run(os.getpid).values())))
                 os.kill(killed[0], signal.SIGKILL)
-        status = run_design(Design("dask", "", lambda: made(3)), Path(sys.argv[1]),
+        status = run_design(Design("dask", "", made), Path(sys.argv[1]),
                             executor=executor, time_limit_s=600.0, report=kill_one)
         print("KILLED", len(killed), "DONE", status.done, status.failed, status.missing, flush=True)
         os._exit(0)
@@ -86,14 +83,6 @@ def test_an_address_without_a_scheduler_ends_with_exit_code_2(tmp_path):
     assert "Traceback" not in answer.stderr
 
 
-def test_a_client_that_gave_up_says_that_the_scheduler_went_away(monkeypatch):
-    monkeypatch.setattr("distributed.as_completed", list)
-    closed = SimpleNamespace(scheduler_info=dict)
-    ended = DaskExecutor("tcp://nowhere:1", 1, closed).run({}, time_limit_s=1.0)
-    with pytest.raises(InputError, match="went away"):
-        next(ended)
-
-
 class Running(list):
     """What dask has on its way: futures that are ready at once."""
 
@@ -107,15 +96,19 @@ class Running(list):
         return self.pop()
 
 
-def test_a_scheduler_that_goes_away_fails_no_case(monkeypatch):
-    """Dask gives what was on its way back as cancelled."""
+@pytest.mark.parametrize(
+    ("there", "told"),
+    [({}, "went away"),  # a client that gave up
+     # what was on its way is given back as cancelled: no case fails
+     ({"workers": {"tcp://worker:1": {}}}, "went away; all completed cases are kept")],
+)  # fmt: skip
+def test_a_scheduler_that_goes_away_is_told(monkeypatch, there, told):
     monkeypatch.setattr("distributed.as_completed", Running)
     lost = SimpleNamespace(key="case-a", cancelled=lambda: True)
-    there = {"workers": {"tcp://worker:1": {}}}
     client = SimpleNamespace(scheduler_info=lambda: there, submit=lambda *_, **__: lost)
-    case = SimpleNamespace(specification=dict)
-    ended = DaskExecutor("tcp://nowhere:1", 1, client).run({"a": case}, time_limit_s=1.0)
-    with pytest.raises(InputError, match="went away; all completed cases are kept"):
+    cases = {"a": SimpleNamespace(specification=dict)} if there else {}
+    ended = DaskExecutor("tcp://nowhere:1", 1, client).run(cases, time_limit_s=1.0)
+    with pytest.raises(InputError, match=told):
         next(ended)
 
 
@@ -194,35 +187,25 @@ def test_every_result_is_held_to_the_versions_of_its_worker():
             executor._ended("a", ("solution", {**mine, **other}), where="w")
 
 
-class Answers:
-    """A client whose workers answer this when they are asked for their versions."""
+def checked(*answers):
+    """Ask workers for their versions, each of which answers this."""
 
-    def __init__(self, *found):
-        self.found = {f"tcp://worker:{k}": answer for k, answer in enumerate(found)}
-
-    def run(self, _, *, on_error):
+    def run(_, *, on_error):
         assert on_error == "return"
-        return self.found
+        if not answers:
+            raise comm.CommClosedError("in <Client>: Stream is closed")
+        return {f"tcp://worker:{k}": answer for k, answer in enumerate(answers)}
+
+    return DaskExecutor("tcp://here:1", 1, SimpleNamespace(run=run))._check_workers()
 
 
 def test_a_worker_that_dies_while_it_is_asked_is_left_out():
     mine, gone = environment(), OSError("Stream is closed")
-    checked = executor.DaskExecutor("tcp://here:1", 1, Answers(mine, gone, mine))._check_workers()
-    assert checked == 2
-    absent = executor.DaskExecutor(
-        "tcp://here:1", 1, Answers(gone, ModuleNotFoundError("dentscope"))
-    )
+    assert checked(mine, gone, mine) == 2
     with pytest.raises(InputError, match="cannot say its versions"):
-        absent._check_workers()
-
-
-def test_a_scheduler_that_dies_while_workers_are_asked_is_told():
-    class Gone:
-        def run(self, *_, **__):
-            raise comm.CommClosedError("in <Client>: Stream is closed")
-
+        checked(gone, ModuleNotFoundError("dentscope"))
     with pytest.raises(InputError, match="scheduler went away"):
-        executor.DaskExecutor("tcp://here:1", 1, Gone())._check_workers()
+        checked()
 
 
 def certificates(folder):

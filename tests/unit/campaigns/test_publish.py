@@ -5,6 +5,7 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 
 import h5py
 import numpy as np
@@ -37,6 +38,7 @@ def made(n=6):
 
 
 DESIGN = Design("trial", "", made)
+TABLES = ("curve", "profiles")
 
 
 def solved(case, seed=0, factor=1.0):
@@ -67,8 +69,8 @@ def stored(path, n=6, factor=1.0):
     return path
 
 
-def test_parts_hold_every_case_once_below_their_size(tmp_path):
-    source = stored(tmp_path / "run")
+def test_parts_hold_every_case_once_below_their_size(folder, tmp_path):
+    source = folder / "run"
     parts = publish(DESIGN, source, tmp_path / "data", most_bytes=120_000)
     assert 1 < len(parts) <= 8
     assert all(part.stat().st_size < 120_000 for part in parts)
@@ -104,18 +106,13 @@ def test_a_part_gives_back_what_the_run_stored(folder):
         assert (other.accuracy, other.environment, other.mesh) == (
             own.accuracy, own.environment, own.mesh
         )  # fmt: skip
-        for mine, theirs in [
-            (own.curve, other.curve),
-            (own.profiles, other.profiles),
-            *((a.curve, b.curve) for a, b in zip(own.unloadings, other.unloadings, strict=True)),
-            *((a.profiles, b.profiles) for a, b in zip(own.unloadings, other.unloadings,
-                                                       strict=True)),
-        ]:  # fmt: skip
+        pairs = [(own, other), *zip(own.unloadings, other.unloadings, strict=True)]
+        for mine, theirs in ((getattr(a, k), getattr(b, k)) for a, b in pairs for k in TABLES):
             assert mine.keys() == theirs.keys()
             for name, values in mine.items():
                 # single precision: half a unit in the last of 24 bits
                 np.testing.assert_allclose(theirs[name], values, rtol=2.0**-24)
-        for a, b in zip(own.unloadings, other.unloadings, strict=True):
+        for a, b in pairs[1:]:
             assert (a.depth, a.residual_sphere, a.residual_flat) == (
                 b.depth, b.residual_sphere, b.residual_flat
             )  # fmt: skip
@@ -203,24 +200,20 @@ def test_a_bit_flipped_anywhere_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a" * 4000 + ".h5", "../c.h5", ".h5", "a/b.h5"])
-def test_a_part_of_an_impossible_name_is_one_line(tmp_path, name):
-    folder = tmp_path / "data"
-    publish(DESIGN, stored(tmp_path / "run", n=6), folder)
-    sums = folder / "SHA256SUMS"
-    sums.write_text(f"{'0' * 64}  {name}\n")
+def test_a_part_of_an_impossible_name_is_one_line(folder, tmp_path, name):
+    data = copytree(folder / "data", tmp_path / "data")
+    (data / "SHA256SUMS").write_text(f"{'0' * 64}  {name}\n")
     with pytest.raises(InputError, match="SHA256SUMS: line 1: damaged"):
-        read_published(folder)
+        read_published(data)
 
 
-def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
-    source = stored(tmp_path / "run")
-    folder = tmp_path / "data"
-    folder.mkdir()
-    for k in range(16):
-        (folder / f"other-{k}.h5").write_text("")
+def test_too_many_parts_leave_the_folder_as_it_was(folder, tmp_path):
+    others = {f"other-{k}.h5" for k in range(16)}
+    for name in others:
+        (tmp_path / name).write_text("")
     with pytest.raises(InputError, match="16 in all"):
-        publish(DESIGN, source, folder)
-    assert {p.name for p in folder.iterdir()} == {f"other-{k}.h5" for k in range(16)}
+        publish(DESIGN, folder / "run", tmp_path)
+    assert {p.name for p in tmp_path.iterdir()} == others
 
 
 def test_status_without_a_run_tells_of_the_published_data(folder, tmp_path, prints, monkeypatch):

@@ -1,6 +1,7 @@
 """A run: identity of cases, resuming, damage, full disks, death of workers and coordinator."""
 
 import errno
+import io
 import json
 import math
 import multiprocessing
@@ -62,6 +63,10 @@ def design(n=5):
     return Design("test", "", lambda: made)
 
 
+def ran(path, n=5, executor=None, **how):
+    return run_design(design(n), path, executor=executor or FakeExecutor(), time_limit_s=1.0, **how)
+
+
 def test_a_case_is_its_dimensionless_groups():
     assert case().id == case(scale=7.0, R=3.0).id
     assert case().id != case(Sy=5.001e8).id
@@ -102,9 +107,9 @@ def test_the_smoke_design_has_twelve_distinct_cases_of_three_pairs():
 
 def test_a_second_run_computes_nothing(tmp_path):
     path, first, second = tmp_path / "run", FakeExecutor(), FakeExecutor()
-    status = run_design(design(), path, executor=first, time_limit_s=1.0)
+    status = ran(path, executor=first)
     assert (status.designed, status.done, status.failed, status.missing) == (5, 5, 0, 0)
-    run_design(design(), path, executor=second, time_limit_s=1.0)
+    ran(path, executor=second)
     assert (len(first.computed), second.computed) == (5, [])
     record = read_curves(path)[0]
     assert record.curve["force"] == pytest.approx(np.linspace(1.0, 2.0, 4))
@@ -114,11 +119,11 @@ def test_a_second_run_computes_nothing(tmp_path):
 def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path):
     path = tmp_path / "run"
     failing = FakeExecutor(Outcome(Ending.NOT_CONVERGED, "stuck at 0.003.", "Refine."))
-    status = run_design(design(2), path, executor=failing, time_limit_s=1.0)
+    status = ran(path, 2, failing)
     assert (status.done, status.failed) == (0, 2)
     assert "stuck at 0.003" in Store(path).read_all()[0].message
     again = FakeExecutor()
-    run_design(design(2), path, executor=again, time_limit_s=1.0, again=frozenset({"failed"}))
+    ran(path, 2, again, again=frozenset({"failed"}))
     assert len(again.computed) == 2
     assert status_of(design(2), Store(path)).done == 2
     # the second try was finer, and the case is still the one that was designed
@@ -178,19 +183,19 @@ def test_fields_lie_beside_the_file_and_belong_to_the_case(tmp_path, monkeypatch
 def test_results_of_another_numerics_version_do_not_come_twice(tmp_path, monkeypatch):
     path = tmp_path / "run"
     monkeypatch.setattr(fem, "NUMERICS_VERSION", -1)
-    run_design(design(3), path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(path, 3)
     old = {record.id for record in read_curves(path)}
     monkeypatch.undo()
     assert {record.id for record in read_curves(path)} == old
-    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(path, 2)
     assert {record.id for record in read_curves(path)} == set(distinct_cases(design(2)))
 
 
 def test_runs_that_share_a_folder_compute_each_case_once(tmp_path):
     path, first, second = tmp_path / "run", FakeExecutor(), FakeExecutor()
-    counts = run_design(design(), path, executor=first, time_limit_s=1.0, share=Share(1, 2))
+    counts = ran(path, executor=first, share=Share(1, 2))
     assert (counts.done, counts.missing) == (3, 2)
-    run_design(design(), path, executor=second, time_limit_s=1.0, share=Share(2, 2))
+    ran(path, executor=second, share=Share(2, 2))
     assert sorted(first.computed + second.computed) == sorted(distinct_cases(design()))
     assert status_of(design(), Store(path)).done == 5
 
@@ -213,29 +218,32 @@ def files_of(folder):
     return {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-@pytest.mark.parametrize("damage", ["truncated", "text", "other", "one bit", "another case"])
+def flipped(image):
+    image = bytearray(image)
+    image[len(image) // 2] ^= 8
+    return image
+
+
+def another_format(_):
+    with h5py.File(stream := io.BytesIO(), "w") as file:
+        file.attrs["format"] = "something else"
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [lambda image: image[:900], lambda _: b"nothing", another_format, flipped, None],
+    ids=["truncated", "text", "other", "one bit", "another case"],
+)
 def test_a_damaged_case_is_reported_and_left_alone(tmp_path, damage):
-    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(tmp_path, 2)
     path, other = Store(tmp_path).files()
-    if damage == "truncated":
-        path.write_bytes(path.read_bytes()[:900])
-    elif damage == "text":
-        path.write_text("nothing")
-    elif damage == "one bit":
-        image = bytearray(path.read_bytes())
-        image[len(image) // 2] ^= 8
-        path.write_bytes(image)
-    elif damage == "another case":
-        path.write_bytes(other.read_bytes())
-    else:
-        path.unlink()
-        with h5py.File(path, "w") as file:
-            file.attrs["format"] = "something else"
+    path.write_bytes(damage(path.read_bytes()) if damage else other.read_bytes())
     before = files_of(tmp_path)
     for read in (read_curves, lambda folder: Store(folder).summaries()):
         with pytest.raises(InputError, match=path.name):
             read(tmp_path)
-    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(tmp_path, 2)
     assert files_of(tmp_path) == before
 
 
@@ -252,44 +260,37 @@ def without_forces(path, change=lambda *_: None):
 
 
 def test_a_missing_dataset_names_itself(tmp_path):
-    run_design(design(1), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
-    [path] = Store(tmp_path).files()
-    without_forces(path)
+    ran(tmp_path, 1)
+    without_forces(*Store(tmp_path).files())
     with pytest.raises(InputError, match="loading/force"):
         read_curves(tmp_path)
+
+
+def outside(cases, path):
+    path.with_name("raw").write_bytes(b"\1" * 32)
+    raw = [(str(path.with_name("raw")), 0, 32)]
+    cases.create_dataset("loading/force", (4,), "f8", external=raw)
 
 
 def linked(cases, path):
     cases["loading/force"] = h5py.ExternalLink(str(path.with_name("other.h5")), "/x")
 
 
-def soft(cases, path):
+def soft(cases, _):
     cases["loading/force"] = h5py.SoftLink("/loading")
 
 
-def outside(cases, path):
-    path.with_name("raw").write_bytes(b"\1" * 32)
-    cases.create_dataset(
-        "loading/force", (4,), "f8", external=[(str(path.with_name("raw")), 0, 32)]
-    )
-
-
-def referring(cases, path):
-    cases["loading"].create_dataset("force", data=[cases.ref] * 4, dtype=h5py.ref_dtype)
-
-
-def absurd(cases, path):
-    cases.create_dataset("loading/force", (10**12,), "f8", chunks=(10**6,))
-
-
-def bomb(cases, path):
-    cases.create_dataset("loading/force", data=np.zeros(200_000), compression="gzip")
-
-
-@pytest.mark.parametrize("trick", [linked, soft, outside, referring, absurd, bomb])
+@pytest.mark.parametrize(
+    "trick",
+    [linked, soft, outside,
+     lambda c, _: c.create_dataset("loading/force", data=[c.ref] * 4, dtype=h5py.ref_dtype),
+     lambda c, _: c.create_dataset("loading/force", (10**12,), "f8", chunks=(10**6,)),
+     lambda c, _: c.create_dataset("loading/force", data=np.zeros(200_000), compression="gzip")],
+    ids=["linked", "soft", "outside", "referring", "absurd", "bomb"],
+)  # fmt: skip
 def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, monkeypatch):
     monkeypatch.setattr(contents, "_MOST_DATA", 1_000_000)
-    run_design(design(1), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(tmp_path, 1)
     [path] = Store(tmp_path).files()
     with h5py.File(path.with_name("other.h5"), "w") as other:
         other["x"] = np.ones(4)
@@ -299,7 +300,7 @@ def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, mon
 
 
 def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
-    run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(tmp_path, 4)
     whole = {record.id: record for record in read_curves(tmp_path)}
     hit = Store(tmp_path).files()[0]
     image = bytearray(hit.read_bytes())
@@ -313,12 +314,11 @@ def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
     found = {record.id: record for record in read_curves(tmp_path)}
     assert set(found) == set(whole) - {min(whole)}
     assert hit.with_name(f"{hit.name}.damaged").read_bytes() == bytes(image)
-    assert run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
+    assert ran(tmp_path, 4).done == 4
 
 
 def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, prints):
-
-    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    ran(tmp_path, 2)
     first = Store(tmp_path).files()[0]
     strays = [first.with_name(n) for n in ("zz.h5", f"{first.stem} (1).h5")]
     for path in strays:
@@ -333,14 +333,11 @@ def test_a_dying_worker_costs_no_case(tmp_path):
     from dentscope.campaigns.executor import LocalExecutor
 
     cases = distinct_cases(design(3))
-    killed = []
-    ended = []
+    killed, ended = [], []
     for item in LocalExecutor(workers=2).run(cases, time_limit_s=600.0):
-        if not killed:
-            workers = [child.pid for child in multiprocessing.active_children()]
-            if workers:
-                os.kill(workers[0], signal.SIGKILL)
-                killed.append(workers[0])
+        for child in multiprocessing.active_children()[: not killed]:
+            os.kill(child.pid, signal.SIGKILL)
+            killed.append(child.pid)
         ended.append(item.id)
         assert item.solution is not None, item.message
     assert killed

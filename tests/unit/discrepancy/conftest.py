@@ -6,7 +6,6 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -94,12 +93,19 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Simulator:
+    """Linear cells, or what is `shown`; `seen` is told of every prediction."""
+
     problem: Problem
+    shown: Callable[..., np.ndarray] | None = None
+    seen: Callable[..., Any] = lambda mechanisms, points: None
 
     def of(self, problem: Problem) -> Simulator:
         return replace(self, problem=problem)
 
     def predict(self, mechanisms: Sequence[Effect], points: Sequence[Any]) -> np.ndarray:
+        self.seen(mechanisms, points)
+        if self.shown is not None:
+            return self.shown(mechanisms, points)
         rows = []
         for point in points:
             row = self.problem.derivative @ point.z
@@ -200,41 +206,3 @@ def balls_on_plate(
 @pytest.fixture(scope="session")
 def set_of_balls() -> Callable[..., Path]:
     return balls_on_plate
-
-
-_EMPTY = {"meta", "path", "use", "rect", "input", "br"}
-
-
-class Page(HTMLParser):
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.attributes: list[tuple[str, dict[str, str | None]]] = []
-        self.seen = ""
-        self.feed(text)
-        self.close()
-        assert self.open == []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.attributes.append((tag, dict(attrs)))
-        if tag not in _EMPTY:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.attributes.append((tag, dict(attrs)))
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag not in _EMPTY:
-            assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        if not {"details", "script", "style", "title"} & set(self.open):
-            self.seen += data
-
-    def of(self, tag: str) -> list[dict[str, str | None]]:
-        return [attributes for name, attributes in self.attributes if name == tag]
-
-
-@pytest.fixture(scope="session")
-def page_of() -> type[Page]:
-    return Page

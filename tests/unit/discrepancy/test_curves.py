@@ -5,9 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.core import Material
+from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.curves.readings import readings_of, reduced
 from dentscope.discrepancy.curves.reduction import from_profile, from_trace
+from dentscope.dynamics import Approach, Striker, scene_of
+from dentscope.dynamics import traced as trace_of
+from dentscope.models import LAWS
 from dentscope.recordings import read
 
 T, PEAK = 2e-4, 3000.0
@@ -27,6 +32,7 @@ def test_force_of_a_half_sine() -> None:
     assert found["loading_time_s"] == pytest.approx(0.5 * T, rel=5e-3)
     # the foot of the recovery is drawn as Hertz's 3/2 power, so a sine's end comes out late
     assert found["contact_time_s"] == pytest.approx(T, rel=0.04)
+    assert from_trace(half_sine(9)) == {}  # too few samples
 
 
 def test_height_of_a_spring() -> None:
@@ -39,10 +45,6 @@ def test_height_of_a_spring() -> None:
     # a parabola through the lowest 40 % of a sine lies 0.3 % above its end
     assert found["peak_depth_m"] == pytest.approx(v / w, rel=4e-3)
     assert found["below_flat_s"] == pytest.approx(T, rel=1e-3)
-
-
-def test_too_few_samples_say_nothing() -> None:
-    assert from_trace(half_sine(9)) == {}
 
 
 def test_noise_goes_through_the_same_reduction() -> None:
@@ -62,10 +64,6 @@ def test_profile_of_a_cap() -> None:
 @pytest.fixture
 def traced(tmp_path: Path) -> Path:
     """One ball, traces of the baseline's own impacts at a tenth of the contact per sample."""
-    from dentscope.core import Material
-    from dentscope.dynamics import Approach, Striker, scene_of, traced
-    from dentscope.models import LAWS
-
     ball, flat = Material(E=208e9, nu=0.3, Sy=2e9), Material(E=206e9, nu=0.29, Sy=3e8)
     (tmp_path / "traces").mkdir()
     rows = ["trial,striker,angle_deg,impact_speed_m_s"]
@@ -75,7 +73,7 @@ def traced(tmp_path: Path) -> Path:
         one = scene_of(
             LAWS["fitted"], sphere=ball, flat=flat, striker=striker, approach=Approach(v)
         )
-        impact = traced(one, points=200)
+        impact = trace_of(one, points=200)
         t, first = np.unique(impact.column("time_s"), return_index=True)
         T = impact.impact.contact_time_s
         grid = np.arange(-T, 2.0 * T, T / 10.0) + 0.03 * T
@@ -95,8 +93,6 @@ def traced(tmp_path: Path) -> Path:
 
 
 def test_a_set_of_traces_only_has_cells_that_the_simulation_meets(traced: Path) -> None:
-    from dentscope.discrepancy.comparison.forward import Point, Simulator
-
     problem = problem_of(read(traced))
     assert set(problem.cells.observable) == {
         "peak_force_N", "contact_time_s", "loading_time_s", "normal_impulse_Ns",

@@ -1,4 +1,4 @@
-"""Ranking, and where the baseline misses, on cells that are linear in everything."""
+"""Ranking, where the baseline misses, and the smallest effect that would show, on linear cells."""
 
 import math
 from dataclasses import replace
@@ -6,12 +6,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.choice.odds import PRIORS
 from dentscope.discrepancy.choice.pairs import _candidates, pair_effect, with_pairs
 from dentscope.discrepancy.comparison.forward import Point
+from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
+from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.inference.together import refined
 from dentscope.discrepancy.locate import ORDER, locate
 from dentscope.discrepancy.rank import rank
+from dentscope.discrepancy.report.sentences import limit_rows
 from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.covariates import covariates
 from dentscope.discrepancy.unknowns.repeats import Drift
@@ -39,24 +43,24 @@ def ranked(toy, library, data, derivative=None):
     return simulator, rank(simulator, mechanisms=library)
 
 
-def test_the_shape_that_made_the_data_comes_first(toy, library) -> None:
+def test_the_shape_that_made_the_data_comes_first_with_occams_evidence(toy, library) -> None:
     _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    lead = found.singles[0]
+    lead, size = found.singles[0], np.linalg.norm(RISING)
     assert lead.name == "rising"
     # known to 1/|shape| = 1/52 of its range: sharpened beyond the five nodes and 241 places
     assert lead.place[0] == pytest.approx(0.5, abs=2e-3)
     assert lead.chi2 < 0.1
-    assert [f.log_evidence for f in found.singles] == sorted(
-        (f.log_evidence for f in found.singles), reverse=True
-    )
-
-
-def test_evidence_of_a_well_known_size_is_occams(toy, library) -> None:
-    """A Gaussian likelihood of width s inside a flat prior: sqrt(2 pi) s times its height."""
-    _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    lead, size = found.singles[0], np.linalg.norm(RISING)
+    evidences = [f.log_evidence for f in found.singles]
+    assert evidences == sorted(evidences, reverse=True)
+    # a Gaussian likelihood of width s inside a flat prior: sqrt(2 pi) s times its height
     gain = 0.5 * (0.5 * size) ** 2 + np.log(np.sqrt(2.0 * np.pi) / size)
     assert lead.log_evidence - found.base.log_evidence == pytest.approx(gain, abs=0.02)
+    # what cannot act or be seen is excluded with its reason
+    assert found.excluded["ruled-out"] == "the bodies are of the wrong kind"
+    assert found.excluded["faint"].startswith(
+        "its largest plausible effect is 0.03 standard errors"
+    )
+    assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
 
 
 def test_what_has_no_name_is_kept_apart_with_its_evidence(toy, library) -> None:
@@ -87,15 +91,6 @@ def test_what_a_size_multiplies_may_be_off(toy) -> None:
     assert spreads[0] == pytest.approx(known, rel=0.1)
     off = 0.5 * np.expm1(0.1)
     assert spreads[1] == pytest.approx(np.hypot(known, off), rel=0.05)
-
-
-def test_what_cannot_act_or_be_seen_is_excluded_with_its_reason(toy, library) -> None:
-    _, found = ranked(toy, library, 0.5 * np.array(RISING))
-    assert found.excluded["ruled-out"] == "the bodies are of the wrong kind"
-    assert found.excluded["faint"].startswith(
-        "its largest plausible effect is 0.03 standard errors"
-    )
-    assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
 
 
 def test_what_would_rest_on_an_assumed_modulus_is_excluded(toy, library) -> None:
@@ -266,20 +261,19 @@ def test_only_what_varies_is_a_covariate(toy, located) -> None:
     assert found["impact speed"] == pytest.approx(np.array([-3.0, -1.0, 1.0, 3.0]) / np.sqrt(5.0))
 
 
-def test_a_miss_everywhere_is_a_miss_overall(located) -> None:
-    (miss,) = located([3.0, 3.0, 3.0, 3.0]).misses
-    # the sum over the square root of their number
-    assert (miss.covariate, miss.trend) == ("overall", "recordings lie above the simulation")
-    assert miss.z == pytest.approx(6.0, rel=0.05)
-    (below,) = located([-3.0, -3.0, -3.0, -3.0]).misses
-    assert below.trend == "recordings lie below it"
-
-
-def test_a_slope_is_a_miss_along_its_condition(located) -> None:
-    (miss,) = located([-3.0, -1.0, 1.0, 3.0]).misses
-    assert miss.covariate == "impact speed"
-    assert miss.trend == "recording over simulation rises with impact speed"
-    assert miss.z == pytest.approx(np.sqrt(20.0), rel=0.05)
+@pytest.mark.parametrize(
+    ("residual", "covariate", "trend", "z"),
+    [   # the sum over the square root of their number
+        ([3.0] * 4, "overall", "recordings lie above the simulation", 6.0),
+        ([-3.0] * 4, "overall", "recordings lie below it", -6.0),
+        ([-3.0, -1.0, 1.0, 3.0], "impact speed",
+         "recording over simulation rises with impact speed", math.sqrt(20.0)),
+    ],
+)  # fmt: skip
+def test_a_miss_is_along_the_condition_that_it_follows(located, residual, covariate, trend, z):
+    (miss,) = located(residual).misses
+    assert (miss.covariate, miss.trend) == (covariate, trend)
+    assert miss.z == pytest.approx(z, rel=0.05)
     assert miss.phase == "free-flight"
 
 
@@ -319,3 +313,44 @@ def test_a_drift_is_a_miss_along_the_order_of_testing(toy, located) -> None:
     (miss,) = locate(given, toy.fit_of([0.0] * 4), np.random.default_rng(1)).misses
     assert (miss.observable, miss.covariate) == ("restitution", ORDER)
     assert miss.trend == "recordings rise with the order of testing"
+
+
+# Standard errors that one alternative has to win to be named, and three nats for its parameter.
+PRIOR = math.log(PRIORS["baseline"] / PRIORS["mechanisms"])
+NEEDED = math.sqrt(2.0 * (PRIOR / RULES.temper + 3.0))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "scale", "neutral", "effect", "value"),
+    [
+        (-8.0, 8.0, "linear", 0.0, lambda x: x, NEEDED),
+        (1e-3, 1e1, "log", 0.0, lambda x: 10.0 * x, NEEDED / 10.0),
+        (1e5, 1e9, "log", math.inf, lambda x: 1e8 / x, 1e8 / NEEDED),
+    ],
+)
+def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, effect, value):
+    own = Parameter("p", "-", low, high, scale, neutral, "", nodes=5)
+    grid = Grid((Axis("m", own),))
+    found = limits_of(
+        SimpleNamespace(
+            base=SimpleNamespace(linear=Linear(np.eye(1), np.zeros((1, 0)))),
+            problem=SimpleNamespace(n_nuisances=0, conditions=(), by_density={}),
+            screened=[
+                SimpleNamespace(
+                    mechanism=SimpleNamespace(name="m", parameters=(None,)), grid=grid,
+                    effect=effect(own.value(grid.places()[:, 0]))[:, None],
+                )
+            ],
+        ),
+    )  # fmt: skip
+    n = len(grid.fine[0])
+    step = (high / low) ** (1.0 / n) - 1.0 if scale == "log" else (high - low) / n / value
+    assert abs(found["m"]) == pytest.approx(value, rel=step)
+    assert np.abs(effect(found["m"])) > NEEDED
+
+
+def test_a_limit_is_told_with_its_unit():
+    mechanism = SimpleNamespace(name="m", parameters=(Parameter("p_m", "m", 0, 1, "log", 0, ""),))
+    ranking = SimpleNamespace(screened=[SimpleNamespace(mechanism=mechanism)])
+    told = SimpleNamespace(limits={"m": 1.5e-7}, titles={"m": "it yields"}, ranking=ranking)
+    assert limit_rows(told) == (("it yields", "p", "150 nm"),)

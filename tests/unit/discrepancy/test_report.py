@@ -12,17 +12,10 @@ from dentscope.discrepancy.experiments.session import Telling
 from dentscope.discrepancy.findings import After, WrongInput
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.locate import Located, Miss
+from dentscope.discrepancy.report import series
 from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.next_session import _meaning, change_lines
 from dentscope.discrepancy.report.sentences import headline, nowhere, own_parameters, why
-from dentscope.discrepancy.report.series import (
-    STATED,
-    WITH,
-    WITHOUT,
-    Against,
-    SeriesPoint,
-    points_of,
-)
 from dentscope.discrepancy.report.story import FORM, _doubt, _took
 from dentscope.discrepancy.report.wording import compared, miss_sentences
 from dentscope.discrepancy.unknowns.nuisances import Nuisance
@@ -30,11 +23,11 @@ from dentscope.discrepancy.unknowns.wrong_number import WrongNumber, WrongReadin
 from dentscope.dynamics.mechanisms import MECHANISMS
 
 OWN = {"sticky-tape": "a tape holds the tip back"}
-SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
+SPEED = series.Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
 
 
-def point(speed: float, *, with_verdict: float = math.nan) -> SeriesPoint:
-    return SeriesPoint(
+def point(speed: float, *, with_verdict: float = math.nan) -> series.SeriesPoint:
+    return series.SeriesPoint(
         "restitution", "-", "ball", 1, 3, {"speed_m_s": speed}, 0.50, 0.49, 0.51, 0.80, 0.60,
         with_verdict, weight=True,
     )  # fmt: skip
@@ -44,17 +37,18 @@ def miss(z: float) -> Miss:
     return Miss("restitution", "overall", "recordings lie above", z)
 
 
-def said(
-    verdict: str, nothing: float, located: Located, *, rest: float = 0.0, reasons: Any = (),
-    audit: Any = (),
-) -> Any:  # fmt: skip
-    return SimpleNamespace(
-        verdict=verdict, located=located, reasons=reasons, inclusion={},
-        probabilities={"baseline": nothing, "work-hardening": 1.0 - nothing},
-        misfit={"as_stated": 650.0, "numbers": 40.0, "rest": rest},
-        choice=SimpleNamespace(alike=(), family=None), wrong_inputs=(), audit=audit,
-        titles={m.name: m.title for m in MECHANISMS} | OWN,
-    )  # fmt: skip
+NOWHERE = Located((), (), 3.0)
+
+
+def said(verdict: str, nothing: float, located: Located = NOWHERE, **more: Any) -> Any:
+    usual = {
+        "reasons": (), "inclusion": {}, "wrong_inputs": (), "audit": (),
+        "probabilities": {"baseline": nothing, "work-hardening": 1.0 - nothing},
+        "misfit": {"as_stated": 650.0, "numbers": 40.0, "rest": 0.0},
+        "choice": SimpleNamespace(alike=(), family=None),
+        "titles": {m.name: m.title for m in MECHANISMS} | OWN,
+    }  # fmt: skip
+    return SimpleNamespace(verdict=verdict, located=located, **usual | more)
 
 
 def test_what_the_sheet_contradicts_itself_in_is_said_with_the_finding() -> None:
@@ -62,20 +56,20 @@ def test_what_the_sheet_contradicts_itself_in_is_said_with_the_finding() -> None
         {"check": "mass of rod", "message": "contradiction: mass of rod: 0.25 kg stated"},
         {"check": "force", "message": "caution: force: too large"},
     ]
-    told = headline(said("adequate", 0.9, Located((), (), 3.0), audit=rows))
+    told = headline(said("adequate", 0.9, audit=rows))
     first = "The set's numbers contradict each other (mass of rod): settle that first. "
     assert told.startswith(first + "Nothing is missing")
 
 
-def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: Any) -> None:
+def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is() -> None:
     svg = comparison([point(1.0, with_verdict=0.505), point(2.0, with_verdict=0.505)], SPEED,
                      ["ball"], key="f")  # fmt: skip
     for colour in ("--faint", "--without", "--verdict"):
         assert f"var({colour})" in svg
-    assert f"{STATED} 0.8; {WITHOUT} 0.6; {WITH} 0.505" in svg
+    assert f"{series.STATED} 0.8; {series.WITHOUT} 0.6; {series.WITH} 0.505" in svg
     alone = comparison([point(1.0), point(2.0)], SPEED, ["ball"], key="f")
     assert "var(--verdict)" not in alone
-    assert WITH not in alone
+    assert series.WITH not in alone
 
 
 @pytest.mark.parametrize(
@@ -104,12 +98,12 @@ def test_no_place_and_no_all_clear_says_why() -> None:
     told = nowhere(said("missing-physics", 0.02, nothing_seen))
     assert "2 %" in told
     assert "moved they do" in told
-    told = nowhere(said("missing-physics", 0.02, nothing_seen, rest=0.8))
+    misfit = {"as_stated": 650.0, "numbers": 40.0, "rest": 0.8}
+    told = nowhere(said("missing-physics", 0.02, nothing_seen, misfit=misfit))
     assert "each place by itself misses too little" in told
     assert nowhere(said("adequate", 0.9, nothing_seen)).startswith("Nowhere beyond")
-    led = said("undetermined", 0.4, nothing_seen)
-    led.probabilities = {"baseline": 0.4, "roughness": 0.3, "outside-library": 0.3}
-    told = nowhere(led)
+    led = {"baseline": 0.4, "roughness": 0.3, "outside-library": 0.3}
+    told = nowhere(said("undetermined", 0.4, nothing_seen, probabilities=led))
     assert "nothing is missing leads with a probability of 40 % only" in told
     assert "explanation that leads" not in told
 
@@ -120,34 +114,26 @@ def test_a_place_under_an_all_clear_says_why() -> None:
     assert nowhere(said("missing-physics", 0.02, seen)) == ""
 
 
-def test_too_few_numbers_may_still_miss_something() -> None:
+def test_undetermined_says_what_leads_or_that_the_data_are_too_few() -> None:
     few = ("too few: only 4 readings to compare, 6 are needed",)
-    told = headline(said("undetermined", 0.001, Located((), (), 3.0), reasons=few))
+    told = headline(said("undetermined", 0.001, reasons=few))
     assert told == "Something is missing (more than 99 %), but too few data to say what."
-    told = headline(said("undetermined", 0.4, Located((), (), 3.0), reasons=few))
-    assert told == "Too few data to say."
-
-
-def test_undetermined_says_what_leads() -> None:
-    told = headline(said("undetermined", 0.32, Located((), (), 3.0)))
+    assert headline(said("undetermined", 0.4, reasons=few)) == "Too few data to say."
+    told = headline(said("undetermined", 0.32))
     assert "nothing is missing 32 %" in told
     assert "68 %" in told
-
-
-def test_what_is_missing_for_sure_is_said_though_not_what() -> None:
-    told = headline(said("undetermined", 0.001, Located((), (), 3.0)))
+    told = headline(said("undetermined", 0.001))
     assert told.startswith("Something is missing (more than 99 %), but these data do not say what.")
     assert "What leads, by probability: " in told
 
 
 def test_a_mechanism_of_ones_own_is_told_in_its_own_words() -> None:
-    v = said("missing-physics", 0.05, Located((), (), 3.0))
-    v.mechanisms, v.inclusion = ("sticky-tape",), {"sticky-tape": 0.9}
+    v = said("missing-physics", 0.05, mechanisms=("sticky-tape",), inclusion={"sticky-tape": 0.9})
     assert headline(v).startswith("The simulation lacks this: a tape holds the tip back (sticky-")
 
 
 def test_what_shares_the_probability_is_told_wrong_numbers_too() -> None:
-    v = said("indistinguishable", 0.05, Located((), (), 3.0))
+    v = said("indistinguishable", 0.05)
     number = "wrong-input:target.Sy_Pa"
     v.probabilities = {number: 0.4, "sticky-tape": 0.3, "work-hardening": 0.1}
     v.titles[number] = "the stated strength of the flat is wrong"
@@ -159,24 +145,25 @@ def test_what_shares_the_probability_is_told_wrong_numbers_too() -> None:
     )
 
 
+def hardens(probabilities: dict[str, float], takes_part: float) -> Any:
+    name = "work-hardening"
+    return said("missing-physics", 0.002, probabilities=probabilities, mechanisms=(name,),
+                inclusion={name: takes_part})  # fmt: skip
+
+
 def test_a_name_of_less_than_seven_tenths_is_the_most_likely() -> None:
-    v = said("missing-physics", 0.002, Located((), (), 3.0))
-    v.probabilities = {"work-hardening": 0.58, "outside-library": 0.418, "baseline": 0.002}
-    v.mechanisms, v.inclusion = ("work-hardening",), {"work-hardening": 0.58}
-    assert headline(v) == (
+    shares = {"work-hardening": 0.58, "outside-library": 0.418, "baseline": 0.002}
+    assert headline(hardens(shares, 0.58)) == (
         "The simulation most likely lacks this: the metal hardens as it is deformed "
         "(work-hardening); probability that it takes part: 58 %."
     )
 
 
 def test_what_may_act_beside_a_name_is_told() -> None:
-    v = said("missing-physics", 0.002, Located((), (), 3.0))
-    v.probabilities = {
-        "work-hardening+sticky-tape": 0.45, "work-hardening": 0.39, "sticky-tape": 0.16
-    }  # fmt: skip
-    v.mechanisms, v.inclusion = ("work-hardening",), {"work-hardening": 0.84}
-    assert headline(v).endswith("it takes part: 84 %. Beside it perhaps: a tape holds the tip back "
-                                "(45 %).")  # fmt: skip
+    shares = {"work-hardening+sticky-tape": 0.45, "work-hardening": 0.39, "sticky-tape": 0.16}
+    assert headline(hardens(shares, 0.84)).endswith(
+        "it takes part: 84 %. Beside it perhaps: a tape holds the tip back (45 %)."
+    )
 
 
 def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
@@ -248,7 +235,7 @@ def test_what_is_drawn_and_doubted_is_all_that_the_comparison_counts(toy: Any) -
     shares = {bar.name: 36.0 * bar.share for bar in _doubt(v)}
     noise = {"scatter and noise of the readings": 1.0}
     assert shares == pytest.approx({FORM: 26.0, "yield strength of the flat": 9.0} | noise)
-    (drawn,) = points_of(v)
+    (drawn,) = series.points_of(v)
     assert drawn.with_verdict == pytest.approx(26.0)
     assert f"{FORM} +5.0" in _took(v, best)
 
@@ -261,13 +248,13 @@ def test_a_dent_read_near_zero_is_drawn_with_its_error(toy: Any) -> None:
     v: Any = SimpleNamespace(problem=replace(problem, cells=cells), best=toy.fit_of([0.0]),
                              stated=np.log([1e-6]), ranking=SimpleNamespace(base=toy.fit_of([0.0]))
                              )  # fmt: skip
-    (drawn,) = points_of(v)
+    (drawn,) = series.points_of(v)
     assert (drawn.low, drawn.measured, drawn.high) == pytest.approx((0.0, 1e-3, 0.501))  # [um]
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.98, True), (0.87, False)])
 def test_what_else_of_its_family_does_as_a_wrong_strength_is_told(share: float, told: bool) -> None:
-    v = said("wrong-input", 0.01, Located((), (), 3.0))
+    v = said("wrong-input", 0.01)
     number = WrongNumber("target.Sy_Pa", "strength", "the stated strength is wrong", "Pa")
     v.wrong_inputs, v.mechanisms = (WrongInput(number, 0.85, 2.5e8, 3.4, 3.0, 3.8),), ()
     v.titles[number.name], v.probabilities = number.title, {number.name: 0.85}

@@ -99,18 +99,27 @@ def answers(command, folder, **given):
     return [[float(x) for x in line.split()] for line in done.stdout.splitlines() if line.strip()]
 
 
-def test_python(sources):
-    contact = runpy.run_path(str(sources / f"{NAME}.py"))["contact"]
-    compare([contact(*row) for row in ROWS])
+C_FLAGS = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror"]
+
+
+def built(folder, name, *command):
+    """A program or a library that a compiler makes of files in the folder."""
+    subprocess.run([*command, "-o", name], cwd=folder, check=True, timeout=120)
+    return folder / name
+
+
+@pytest.mark.parametrize(("law", "longest"), [("fitted", math.inf), ("compact", 250)])
+def test_python(tmp_path, law, longest):
+    write_sources(LAWS[law], tmp_path)
+    source = tmp_path / f"{NAME}.py"
+    contact = runpy.run_path(str(source))["contact"]
+    compare([contact(*row) for row in ROWS], law=law)
+    assert len(source.read_text().splitlines()) < longest
 
 
 @needs("gcc")
 def test_c(sources):
-    library = sources / "law.so"
-    flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"]
-    subprocess.run(
-        ["gcc", *flags, "-o", library, sources / f"{NAME}.c", "-lm"], check=True, timeout=120
-    )
+    library = built(sources, "law.so", "gcc", *C_FLAGS, "-shared", "-fPIC", f"{NAME}.c", "-lm")
 
     class Result(ctypes.Structure):
         _fields_ = [(name, ctypes.c_double) for name in OUTPUTS]
@@ -138,12 +147,9 @@ def test_fortran(sources):
         "end program main\n"
     )
     flags = ["-std=f2008", "-O2", "-Wall", "-Werror"]
-    subprocess.run(
-        ["gfortran", *flags, f"{NAME}.f90", "main.f90", "-o", "main"],
-        cwd=sources, check=True, timeout=120,
-    )  # fmt: skip
+    main = built(sources, "main", "gfortran", *flags, f"{NAME}.f90", "main.f90")
     with written(sources).open() as stream:
-        compare(answers([sources / "main"], sources, stdin=stream))
+        compare(answers([main], sources, stdin=stream))
 
 
 @needs("octave")
@@ -198,13 +204,6 @@ def test_modelica(sources):
     compare(found, rows)
 
 
-def test_the_compact_law_is_written_by_the_same_printer(tmp_path):
-    write_sources(LAWS["compact"], tmp_path)
-    contact = runpy.run_path(str(tmp_path / f"{NAME}.py"))["contact"]
-    compare([contact(*row) for row in ROWS], law="compact")
-    assert len((tmp_path / f"{NAME}.py").read_text().splitlines()) < 250
-
-
 DRIVER = f"""
 #include "{NAME}.h"
 #include <stdio.h>
@@ -237,10 +236,7 @@ int main(int argc, char **argv)
 def test_one_collision_by_the_exported_force_is_ours(sources):
     """The force with its history in a time-stepping program: restitution, depth, force, dent."""
     (sources / "driver.c").write_text(DRIVER)
-    flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror"]
-    program = sources / "driver"
-    files = [sources / "driver.c", sources / f"{NAME}.c"]
-    subprocess.run(["gcc", *flags, "-o", program, *files, "-lm"], check=True, timeout=120)
+    program = built(sources, "driver", "gcc", *C_FLAGS, "driver.c", f"{NAME}.c", "-lm")
     for speed in (0.1, 1.0, 10.0):
         ours = struck(ALUMINIUM, R, MASS, speed)
         bodies = (STEEL.E, STEEL.nu, STEEL.Sy, ALUMINIUM.E, ALUMINIUM.nu, ALUMINIUM.Sy)
@@ -353,10 +349,7 @@ def program(sources):
     for name in ("gran_sub_mod_normal.h", "granular_model.h", "error.h"):
         (sources / name).write_text(INTERFACE)
     (sources / "driver.cpp").write_text(LAMMPS_DRIVER)
-    made = sources / "lammps-driver"
-    files = [sources / "driver.cpp", sources / f"{STYLE}.cpp"]
-    subprocess.run(["g++", *FLAGS, "-o", made, *files], check=True, timeout=120)
-    return made
+    return built(sources, "lammps-driver", "g++", *FLAGS, "driver.cpp", f"{STYLE}.cpp")
 
 
 def coefficients(body):

@@ -18,6 +18,7 @@ from dentscope.fitting import table
 from dentscope.fitting.coefficients import write_coefficients
 from dentscope.fitting.fit import fit_tables
 from dentscope.fitting.form import START
+from dentscope.fitting.hardening import fit_hardening, hardening_records, judge_hardening
 from dentscope.fitting.prediction import Errors, predict
 from dentscope.fitting.refit import refit
 from dentscope.fitting.table import ResidualTable, Table, is_held_out, read_sources, tables_of
@@ -25,6 +26,7 @@ from dentscope.models import LAWS, DomainWarning, critical_depth
 from dentscope.models.closed_form import COEFFICIENTS
 from dentscope.models.coefficients import laws_from, read_coefficients
 from dentscope.models.fitted import closed_form_law
+from dentscope.models.hardening import hardening_law
 from dentscope.studies.closed_form.page import (
     BEGIN,
     END,
@@ -35,6 +37,8 @@ from dentscope.studies.closed_form.page import (
     update_page,
 )
 from made_files import put
+
+CONTENT = read_coefficients()
 
 
 def pair_of(E_s, E_f, Sy_min, ratio, nu_s=0.3, nu_f=0.3):
@@ -246,28 +250,25 @@ def test_rows_whose_contact_edge_was_not_seen_do_not_move_the_fit():
 
 
 def test_shipped_coefficients_say_where_they_come_from():
-    content = read_coefficients()
-    assert content is not None
-    assert tuple(content["coefficients"]) == COEFFICIENTS
-    assert all(entry["standard_error"] >= 0.0 for entry in content["coefficients"].values())
-    assert all(len(c["sha256"]) == 64 for c in content["provenance"]["campaigns"])
-    assert np.array(content["covariance"]).shape == (len(COEFFICIENTS), len(COEFFICIENTS))
+    assert tuple(CONTENT["coefficients"]) == COEFFICIENTS
+    assert all(entry["standard_error"] >= 0.0 for entry in CONTENT["coefficients"].values())
+    assert all(len(c["sha256"]) == 64 for c in CONTENT["provenance"]["campaigns"])
+    assert np.array(CONTENT["covariance"]).shape == (len(COEFFICIENTS), len(COEFFICIENTS))
 
 
-def test_an_older_coefficients_file_is_refused_with_what_to_do():
-    content = read_coefficients()
-    with pytest.raises(InputError, match="dentscope fit"):
-        laws_from({**content, "format": "dentscope-coefficients/1"}, source="fitted.json")
-    some = dict(list(content["coefficients"].items())[1:])
-    with pytest.raises(InputError, match=f"no {COEFFICIENTS[0]}"):
-        laws_from({**content, "coefficients": some}, source="fitted.json")
-
-
-def test_a_correction_of_other_channels_is_refused():
-    content = read_coefficients()
-    other = {**content["correction"], "channels": ["g_a", "h"]}
-    with pytest.raises(InputError, match=r"correction\.channels: g_a, h \(allowed: fin, c, g_a, "):
-        laws_from({**content, "correction": other}, source="fitted.json")
+@pytest.mark.parametrize(
+    ("other", "told"),
+    [
+        ({"format": "dentscope-coefficients/1"}, "dentscope fit"),
+        ({"coefficients": {k: CONTENT["coefficients"][k] for k in COEFFICIENTS[1:]}},
+         f"no {COEFFICIENTS[0]}"),
+        ({"correction": CONTENT["correction"] | {"channels": ["g_a", "h"]}},
+         r"correction\.channels: g_a, h \(allowed: fin, c, g_a, "),
+    ],
+)  # fmt: skip
+def test_coefficients_of_an_older_form_are_refused_with_what_to_do(other, told):
+    with pytest.raises(InputError, match=told):
+        laws_from({**CONTENT, **other}, source="fitted.json")
 
 
 def test_below_first_yield_and_far_from_the_data_the_laws_are_one():
@@ -287,11 +288,10 @@ def test_below_first_yield_and_far_from_the_data_the_laws_are_one():
 
 
 def test_the_written_file_reads_back_as_the_same_law(tmp_path):
-    content = read_coefficients()
-    write_coefficients(content, tmp_path / "fitted.json")
+    write_coefficients(CONTENT, tmp_path / "fitted.json")
     again = json.loads((tmp_path / "fitted.json").read_text())
-    assert again == content
-    values = {k: v["value"] for k, v in content["coefficients"].items()}
+    assert again == CONTENT
+    values = {k: v["value"] for k, v in CONTENT["coefficients"].items()}
     compact, fitted = laws_from(again, source="x")
     assert compact.coefficients == fitted.coefficients == closed_form_law(values).coefficients
     assert np.array_equal(fitted.correction.weights, LAWS["fitted"].correction.weights)
@@ -311,17 +311,15 @@ def test_publishing_outside_a_checkout_is_one_line(monkeypatch, capsys):
 
 
 def test_page_shows_the_coefficients_in_use():
-    content = read_coefficients()
     text = PAGE.read_text(encoding="utf-8")
     shown = text[text.index(BEGIN) : text.index(END) + len(END)]
-    assert shown == published_section(content)
+    assert shown == published_section(CONTENT)
 
 
 def test_page_keeps_what_stands_around_the_coefficients(tmp_path):
     page = put(tmp_path / "page.md", f"before\n{BEGIN}\nold\n{END}\nafter\n")
-    content = read_coefficients()
-    update_page(page, published_section(content))
-    update_page(page, published_section(content))
+    update_page(page, published_section(CONTENT))
+    update_page(page, published_section(CONTENT))
     text = page.read_text()
     assert text.startswith("before\n")
     assert text.endswith("\nafter\n")
@@ -346,8 +344,7 @@ def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypat
 
 
 def test_a_challenge_of_other_coefficients_is_called_so():
-    content = read_coefficients()
-    found = content["errors"]["fitted"]["left_out"]
+    found = CONTENT["errors"]["fitted"]["left_out"]
     errors = [("fitted", Errors(**{k: tuple(v) for k, v in found.items()}))]
     names = [f"challenge-0123456789ab-{k:02}" for k in range(24)]
     assert "coefficients above" in judged_section(
@@ -370,15 +367,27 @@ class Record:
         self.curve["radius_last_node"] = one + 1e-7
 
 
-def test_cases_of_low_resolution_count_only_without_finer_ones(tmp_path, monkeypatch):
-    low, fine = design_named("smoke").make()[:3], design_named("space").make()[:2]
-    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (*low, *fine)])
-    assert tables_of(read_sources([tmp_path]))[0].names == tuple(case.name for case in fine)
-    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in low])
-    assert len(tables_of(read_sources([tmp_path]))[0].pairs) == 3
+@pytest.fixture
+def tables(tmp_path, monkeypatch):
+    """The tables of records that a campaign would hold."""
+
+    def of(*records, **more):
+        monkeypatch.setattr(table, "read_curves", lambda _: list(records))
+        return tables_of(read_sources([tmp_path]), **more)
+
+    return of
 
 
-def test_of_one_combination_the_case_that_unloads_counts(tmp_path, monkeypatch):
+def test_cases_of_low_resolution_count_only_without_finer_ones(tables):
+    low, fine = (
+        [Record(case) for case in design_named(name).make()[:n]]
+        for name, n in (("smoke", 3), ("space", 2))
+    )
+    assert tables(*low, *fine)[0].names == tuple(r.case.name for r in fine)
+    assert len(tables(*low)[0].pairs) == 3
+
+
+def test_of_one_combination_the_case_that_unloads_counts(tables, tmp_path):
     again, other = (Record(case) for case in design_named("smoke").make()[:2])
     unloads = Record(again.case)
     d = np.linspace(2e-5, 1e-5, 9)
@@ -388,21 +397,19 @@ def test_of_one_combination_the_case_that_unloads_counts(tmp_path, monkeypatch):
         SimpleNamespace(depth=depth, residual_sphere=0.0, residual_flat=1e-5, curve=back),
     )
     for records in ([unloads, again, other], [again, other, unloads]):
-        monkeypatch.setattr(table, "read_curves", lambda _, found=records: found)
-        rows, turns = tables_of(read_sources([tmp_path]))
+        rows, turns = tables(*records)
         assert (len(rows.pairs), turns.total.tolist()) == (2, [0.5])
         with pytest.raises(InputError, match=r"unload: 1 .*two or more, `unload_depths`"):
             refit([tmp_path])
 
 
-def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
+def test_metals_that_harden_are_not_fitted(tables):
     plain, other = design_named("smoke").make()[:2]
     sphere = other.pair.sphere
     curve = swift(Sy=sphere.Sy, K=3.0 * sphere.Sy, n=0.2)
     pair = replace(other.pair, sphere=sphere.with_(flow=Flow(curve=curve)))
     hard = replace(other, problem=replace(other.problem, pair=pair))
-    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (plain, hard)])
-    assert tables_of(read_sources([tmp_path]))[0].names == (plain.name,)
+    assert tables(Record(plain), Record(hard))[0].names == (plain.name,)
 
 
 @pytest.mark.parametrize(
@@ -414,14 +421,11 @@ def test_the_second_half_of_the_space_judges_as_validation_does(name, kept):
     assert is_held_out(SimpleNamespace(case=SimpleNamespace(name=name))) is kept
 
 
-def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
+def test_held_out_cases_are_not_fitted(tables):
     """A case of the validation design never reaches a fit, whatever file it lies in."""
     cases = (*design_named("validation").make()[:2], *design_named("smoke").make()[:3])
-    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in cases])
-    fitted, _ = tables_of(read_sources([tmp_path]))
-    judged, _ = tables_of(read_sources([tmp_path]), held_out=True)
-    assert len(fitted.pairs) == 3
-    assert len(judged.pairs) == 2
+    (fitted, _), (judged, _) = (tables(*map(Record, cases), held_out=x) for x in (False, True))
+    assert (len(fitted.pairs), len(judged.pairs)) == (3, 2)
     assert not any(name.startswith("validation") for name in fitted.names)
 
 
@@ -429,3 +433,39 @@ def test_published_parts_are_known_as_campaigns():
     """What is no campaign is refused before the seconds that a reader takes to load."""
     folder = PAGE.parents[1] / "data" / "campaign"
     assert fit_command._files([folder]) == sorted(folder.glob("*.h5"))
+
+
+@pytest.fixture(scope="module")
+def sources():
+    data = PAGE.parents[1] / "data" / "campaign"
+    return read_sources(sorted([*data.glob("*hardening-1.h5"), *data.glob("*plateau-1.h5")]))
+
+
+def test_no_fit_reads_the_pairs_for_judging(sources):
+    seen, kept = hardening_records(sources), hardening_records(sources, held_out=True)
+    assert (len(seen), len(kept)) == (96 + 48, 24 + 24)
+    assert all(r.case.name.startswith("validation") for r in kept)
+    assert not {r.id for r in seen} & {r.id for r in kept}
+
+
+def test_pairs_that_no_fit_read_are_within_what_is_stated(sources):
+    kept = hardening_records(sources, held_out=True)
+    errors, within = judge_hardening(LAWS["hardening"], kept)
+    assert errors["force"][0] < 0.015
+    assert errors["radius"][0] < 0.01
+    for quantity, (one, two) in within.items():
+        assert one == pytest.approx(0.68, abs=0.2), quantity
+        assert two > 0.85, quantity
+
+
+def test_a_few_pairs_are_enough_to_halve_the_error_of_the_equivalence_alone(sources):
+    records = hardening_records(sources)
+    found = fit_hardening(LAWS["fitted"], records[::3])
+    assert found.combinations == 48
+    none = replace(found.correction, weights=np.zeros_like(found.correction.weights))
+    learned, alone = (
+        judge_hardening(hardening_law(LAWS["fitted"], one), records[1::12])[0]
+        for one in (found.correction, none)
+    )
+    assert learned["force"][0] < 0.75 * alone["force"][0]
+    assert learned["radius"][0] < 0.6 * alone["radius"][0]

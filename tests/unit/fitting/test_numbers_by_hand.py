@@ -92,55 +92,45 @@ def test_a_bump_stands_for_six_and_a_half_pairs() -> None:
     assert len(_spread_out(groups[:6])) == 1
 
 
-def rows_of(**off):
-    n = 4
-    D = np.geomspace(1e-3, 1e-2, n)
-    ones = np.ones(n)
-    none = np.zeros(n, dtype=int)
-    table = SimpleNamespace(
-        force=ones, radius=ones, share=0.5 * ones, edge_seen=ones > 0, case=none
-    )
-    turns = SimpleNamespace(
-        exponent=1.4 * ones, total=0.5 * ones, sphere_part=0.2 * ones, case=none, D=D
-    )  # fmt: skip
-    values = {"force": ones, "radius": ones, "share": 0.5 * ones, "total": 0.5 * ones,
-              "sphere": 0.1 * ones, "exponent": 1.4 * ones} | off  # fmt: skip
-    return table, turns, SimpleNamespace(**values)
-
-
 @pytest.fixture
-def misfit(monkeypatch):
+def rows(monkeypatch):
     def of(back=1.0, **off):
-        table, turns, seen = rows_of(**off)
+        n = 4
+        ones, none = np.ones(n), np.zeros(n, dtype=int)
+        table = SimpleNamespace(
+            force=ones, radius=ones, share=0.5 * ones, edge_seen=ones > 0, case=none
+        )
+        turns = SimpleNamespace(
+            exponent=1.4 * ones, total=0.5 * ones, sphere_part=0.2 * ones, case=none,
+            D=np.geomspace(1e-3, 1e-2, n),
+        )  # fmt: skip
+        values = {"force": ones, "radius": ones, "share": 0.5 * ones, "total": 0.5 * ones,
+                  "sphere": 0.1 * ones, "exponent": 1.4 * ones} | off  # fmt: skip
+        seen = SimpleNamespace(**values)
         monkeypatch.setattr(correcting, "moved", lambda numbers, shifts: None)
         monkeypatch.setattr(correcting, "predict_by", lambda *given: seen)
-        monkeypatch.setattr(predicting, "given_back", lambda p, u: np.full(4, back))
-        return _Rows(None, table, turns, np.full(4, 0.003), np.full(4, 0.003)).misfit(None)
+        monkeypatch.setattr(predicting, "given_back", lambda p, u: np.full(n, back))
+        return _Rows(None, table, turns, np.full(n, 0.003), np.full(n, 0.003))
 
     return of
 
 
-def test_a_misfit_of_one_is_three_thousandths_of_share_and_what_the_others_have(misfit) -> None:
+def test_a_misfit_of_one_is_three_thousandths_of_share_and_what_the_others_have(rows) -> None:
     ones = np.ones(4)
-    loading, unloading = misfit(
+    loading, unloading = rows(
         share=0.503 * ones, total=(0.5 + 4e-4 + 3e-3) * ones, sphere=(0.1 + 4e-3) * ones,
         exponent=1.415 * ones, back=math.exp(0.008),
-    )  # fmt: skip
+    ).misfit(None)  # fmt: skip
     assert loading[2] == pytest.approx(ones)
     # of half the depth: 0.0004 + 0.006 of what is left
     assert unloading == pytest.approx(np.ones((4, 4)))
 
 
-def test_a_misfit_beyond_four_counts_linearly(misfit, monkeypatch) -> None:
-    def cost(x):
-        table, turns, seen = rows_of(share=(0.5 + 0.003 * x) * np.ones(4))
-        monkeypatch.setattr(correcting, "predict_by", lambda *given: seen)
-        return _Rows(None, table, turns, np.full(4, 0.003), np.full(4, 0.003)).cost(None)
-
-    misfit()
+def test_a_misfit_beyond_four_counts_linearly(rows) -> None:
     # 16 (sqrt(1 + x^2/16) - 1) for each of four rows
     for x in (0.1, 4.0, 400.0):
-        assert cost(x) == pytest.approx(64.0 * (math.sqrt(1.0 + x * x / 16.0) - 1.0), rel=1e-6)
+        cost = rows(share=(0.5 + 0.003 * x) * np.ones(4)).cost(None)
+        assert cost == pytest.approx(64.0 * (math.sqrt(1.0 + x * x / 16.0) - 1.0), rel=1e-6)
 
 
 class Parabola:
@@ -249,10 +239,6 @@ def test_weights_of_hardening_are_held_by_300_against_squares_of_a_hundredth() -
 
 def test_eight_folds_are_left_out_in_turn(monkeypatch) -> None:
     asked = []
-
-    def regress(cases):
-        asked.append(len(cases))
-        raise StopIteration if len(asked) > 20 else RuntimeError
 
     monkeypatch.setattr(hardening, "_case", lambda fitted, record: record)
     monkeypatch.setattr(hardening, "_regress", lambda cases: asked.append(len(cases)))

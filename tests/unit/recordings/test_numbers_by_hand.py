@@ -9,21 +9,10 @@ import pytest
 from dentscope.core import InputError
 from dentscope.core.rig import StrikerTable
 from dentscope.recordings import audit
+from dentscope.recordings.checks import motion, press
 from dentscope.recordings.checks.contact import _budget, _supply, check_energy, check_force
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
-from dentscope.recordings.checks.motion import (
-    check_friction,
-    check_impulse,
-    check_mass,
-    check_speed,
-    check_trace,
-)
-from dentscope.recordings.checks.press import (
-    check_press_depths,
-    check_press_load,
-    check_press_recovery,
-)
 from dentscope.recordings.checks.trial_view import TrialReading
 from dentscope.recordings.noise import noise_of
 from made_sets import BALL, STEEL, made_set
@@ -73,7 +62,7 @@ def test_a_strength_without_an_error_is_known_to_a_seventh(set_of):
     found = set_of(load_N=[load], dent_diameter_m=[1e-3], noise="dent_diameter_m = 1e-6\n")
     # a tenth of the mean pressure where 0.35 are the least
     expected = 0.25 / (0.1 * math.hypot(0.005, 0.002, 0.15))
-    seen = of_check(check_press_load(found), "load")
+    seen = of_check(press.check_press_load(found), "load")
     assert seen.significance == pytest.approx(expected, rel=1e-9)
 
 
@@ -96,7 +85,7 @@ def test_a_mean_pressure_lies_between_a_third_of_a_hardness_and_a_third_above_it
         target=target, load_N=[pressure * math.pi * 0.25e-6], dent_diameter_m=[1e-3],
         noise="dent_diameter_m = 1e-9\nload_N_relative = 1e-4\n",
     )  # fmt: skip
-    assert of_check(check_press_load(found), "load").severity is Severity[said]
+    assert of_check(press.check_press_load(found), "load").severity is Severity[said]
 
 
 @pytest.mark.parametrize(
@@ -114,7 +103,7 @@ def test_what_springs_back_is_half_to_six_sevenths_of_f_over_e_a(set_of, share, 
         recovered_depth_m=[back * scale],
         noise="dent_diameter_m = 1e-9\nrecovered_depth_m = 1e-12\nload_N_relative = 1e-4\n",
     )
-    assert of_check(check_press_recovery(found), "recovery").severity is Severity[said]
+    assert of_check(press.check_press_recovery(found), "recovery").severity is Severity[said]
 
 
 def test_a_contact_is_0975_of_its_circle_of_the_depth_where_no_diameter_was_read(set_of):
@@ -128,7 +117,7 @@ def test_a_contact_is_0975_of_its_circle_of_the_depth_where_no_diameter_was_read
         recovered_depth_m=[2.0 * back],
         noise="press_depth_m = 1e-9\nrecovered_depth_m = 1e-12\nload_N_relative = 1e-4\n",
     )
-    seen = of_check(check_press_recovery(found), "recovery")
+    seen = of_check(press.check_press_recovery(found), "recovery")
     assert seen.expected == pytest.approx(back, rel=1e-9)
     error = back / 0.675 * math.hypot(0.25 * 0.55 / 0.975, 0.05)
     assert seen.significance == pytest.approx((2.0 - 0.85 / 0.675) * back / error, rel=1e-4)
@@ -153,7 +142,7 @@ def test_four_standard_deviations_are_a_mistake_and_the_error_of_a_scale_counts(
     """
     ball = BALL + "Sy_Pa = 2e9\n"
     found = set_of(ball, **PRESSED, press_depth_m=[deepest], noise=DEPTHS + scales)
-    seen = of_check(check_press_depths(found), "depths")
+    seen = of_check(press.check_press_depths(found), "depths")
     assert seen.severity is Severity["CONTRADICTION" if z > 4.0 else "CONSISTENT"]
     assert seen.significance == pytest.approx(z, rel=1e-9)
 
@@ -164,7 +153,7 @@ def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
         load_N=[2e9 * math.pi * 0.25e-6], dent_diameter_m=[1e-3], noise="dent_diameter_m = 1e-9\n",
     )  # fmt: skip
     # twice the hardness where 1.3 of it are the most
-    seen = of_check(check_press_load(found), "load")
+    seen = of_check(press.check_press_load(found), "load")
     assert seen.significance == pytest.approx(0.7 / (2.0 * 0.005), rel=1e-4)
 
 
@@ -174,7 +163,7 @@ def _pulse(set_of, ratio):
         peak_force_N=[4e-3 / ratio / 1e-4], contact_time_s=[1e-4],
         noise="restitution = 1e-6\npeak_force_N_relative = 1e-5\ncontact_time_s = 1e-12\n",
     )  # fmt: skip
-    return of_check(check_impulse(found), "impulse")
+    return of_check(motion.check_impulse(found), "impulse")
 
 
 def test_an_impulse_is_a_quarter_to_all_of_peak_force_times_duration(set_of):
@@ -214,7 +203,7 @@ def off_by(z):
 def test_masses_share_a_fiftieth_of_false_alarms_and_one_alone_has_it_all(set_of, z, said):
     """Two-sided beyond 2.33 is 0.02."""
     found = set_of(off_by(z), angle_deg=[90], impact_speed_m_s=[1])
-    assert check_mass(found)[0].severity.name == said
+    assert motion.check_mass(found)[0].severity.name == said
 
 
 def test_of_several_masses_single_ones_have_a_quarter_of_the_false_alarms(set_of):
@@ -223,7 +212,7 @@ def test_of_several_masses_single_ones_have_a_quarter_of_the_false_alarms(set_of
     def said(first, second):
         other = f"[strikers.other]\n{off_by(second)}"
         found = set_of(off_by(first), more=other, angle_deg=[90], impact_speed_m_s=[1])
-        return [f.severity.name for f in check_mass(found)]
+        return [f.severity.name for f in motion.check_mass(found)]
 
     assert said(2.95, -2.95)[:2] == ["CONSISTENT", "CONSISTENT"]
     assert said(3.1, -3.1)[:2] == ["CONTRADICTION", "CONTRADICTION"]
@@ -236,7 +225,7 @@ def test_exact_sizes_are_rounded_to_three_digits(set_of):
     """Nothing has an error: a mass 1 % off is 1/0.3 of an error."""
     ball = BALL.replace("4e-3", str(1.01 * SOLID)) + DENSE
     found = set_of(ball, angle_deg=[90], impact_speed_m_s=[1])
-    assert check_mass(found)[0].significance == pytest.approx(1.0 / 0.3, rel=1e-9)
+    assert motion.check_mass(found)[0].significance == pytest.approx(1.0 / 0.3, rel=1e-9)
 
 
 @pytest.mark.parametrize(("z", "said"), [(2.95, "CONSISTENT"), (3.1, "CONTRADICTION")])
@@ -247,7 +236,7 @@ def test_other_checks_share_one_false_alarm_in_two_hundred(set_of, z, said):
         angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[fall * (1.0 + 0.01 * z)],
         impact_speed_m_s_std=[0.01 * fall],
     )  # fmt: skip
-    assert of_check(check_speed(found), "speed").severity.name == said
+    assert of_check(motion.check_speed(found), "speed").severity.name == said
 
 
 def test_an_angle_that_stays_may_err_by_a_two_hundredth_of_the_approach():
@@ -276,7 +265,7 @@ def test_friction_is_judged_by_the_angle_two_of_its_deviations_aside(set_of):
             ROD, angle_deg=[angle], angle_deg_std=[std], impact_speed_m_s=[1],
             friction_impulse_ratio=[0.9], noise="friction_impulse_ratio = 0.01\n",
         )  # fmt: skip
-        return of_check(check_friction(found), "friction").expected
+        return of_check(motion.check_friction(found), "friction").expected
 
     assert limit(60, 1.0) == pytest.approx(limit(58, 1e-9), rel=1e-6)
 
@@ -291,7 +280,7 @@ def _traced(set_of, ends, samples=41):
         noise="restitution = 1e-6\nforce_N_relative = 0.003\n",
         trace={"time_s": t, "force_N": force},
     )  # fmt: skip
-    return of_check(check_trace(found), "impulse")
+    return of_check(motion.check_trace(found), "impulse")
 
 
 def test_a_trace_begins_below_a_twentieth_of_its_peak_and_has_five_samples(set_of):
@@ -305,7 +294,7 @@ def test_a_speed_without_an_error_is_known_to_a_fiftieth(set_of):
     """A fall of 0.5 m gives 3.13 m/s; 5 % less is 2.5 errors of what was said."""
     fall = math.sqrt(2.0 * 9.81 * 0.5)
     found = set_of(angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[0.95 * fall])
-    seen = of_check(check_speed(found), "speed")
+    seen = of_check(motion.check_speed(found), "speed")
     assert seen.significance == pytest.approx(0.05 / (0.02 * 0.95), rel=1e-2)
 
 
@@ -417,3 +406,56 @@ def test_the_circle_of_a_dent_takes_no_more_than_all_energy_brought(set_of, wide
     assert found.severity is Severity[lack]
     # sliding widens a dent
     assert not check_energy(set_of(target=target, **columns, approach_tangential_m_s=[1.0]))
+
+
+MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6
+STRIKER = f"""shape = "sphere"
+tip_radius_m = 0.0115
+mass_kg = {{ value = {MASS}, std = 1e-5 }}
+{STEEL}Sy_Pa = 7e8
+"""
+NOISE = "impact_speed_relative = 0.005\nforce_N_relative = 0.005\nrestitution = 0.005\n"
+
+
+def judged(folder, *, scale=1.0, restitution=E, upto=1.0, trace=None):
+    impulse = MASS * ((1.0 + E) * SPEED + 9.81 * TIME)
+    t = np.linspace(0.0, upto * TIME, 401)
+    force = scale * impulse * np.pi / (2.0 * TIME) * np.sin(np.pi * t / TIME)
+    measured = {} if restitution is None else {"restitution": [restitution]}
+    return motion.check_trace(made_set(
+        folder, STRIKER, target="Sy_Pa = 3e8\n", noise=f"{NOISE}tip_height_m = 1e-6\n",
+        trace=trace or {"time_s": t, "force_N": force}, angle_deg=[90], impact_speed_m_s=[SPEED],
+        **measured,
+    ))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scale", "restitution", "severity"),
+    [
+        (1.0, E, Severity.CONSISTENT),
+        (1.015, E, Severity.CONSISTENT),
+        (1.1, E, Severity.CONTRADICTION),
+        (0.9, E, Severity.CONTRADICTION),
+        # without a restitution, anything from 1/1.6 to 2/1.6 of the true impulse may be
+        (1.0, None, Severity.CONSISTENT),
+        (0.7, None, Severity.CONSISTENT),
+        (0.5, None, Severity.CONTRADICTION),
+        (1.4, None, Severity.CONTRADICTION),
+    ],
+)
+def test_impulse_of_a_half_sine(tmp_path, scale, restitution, severity):
+    (finding,) = judged(tmp_path, scale=scale, restitution=restitution)
+    assert finding.severity is severity
+    # 2/pi F T of the half sine, by the trapezoidal rule of 400 panels
+    assert finding.value == pytest.approx(scale * 0.05 * (1.6 * 2.0 + 9.81e-4), rel=1e-4)
+
+
+def test_trace_that_stops_under_load_is_not_judged(tmp_path):
+    (finding,) = judged(tmp_path, upto=0.7)
+    assert finding.severity is Severity.UNCHECKED
+    assert "ends at 81% of its peak" in finding.message
+
+
+def test_a_trace_of_the_motion_alone_is_not_judged(tmp_path):
+    heights = {"time_s": [0.0, 1e-5], "tip_height_m": [0.0, 1e-6]}
+    assert judged(tmp_path, trace=heights) == []

@@ -11,7 +11,6 @@ from dentscope.recordings import read
 from dentscope.recordings.recording_set import read_as
 from dentscope.reduce.images.clip import read_clip
 from dentscope.reduce.table.file import read_columns
-from dentscope.reduce.table.tension import reduce_tension
 from made_records import tracker_project
 
 
@@ -120,58 +119,6 @@ def test_a_photron_file_is_a_clip(tmp_path, bits):
     (tmp_path / "a.cihx").unlink()
     with pytest.raises(InputError, match="no header"):
         read_clip(tmp_path / "a.mraw")
-
-
-def test_a_flow_curve_of_a_known_metal_comes_back():
-    """Swift's law K (e0 + p)^n in true values, pulled and necked, as engineering values."""
-    K, n, E, Sy = 600e6, 0.2, 70e9, 200e6
-    p = np.linspace(0.0, 0.35, 4000)
-    true = np.maximum(K * ((Sy / K) ** (1.0 / n) + p) ** n, Sy)
-    elastic = np.linspace(0.0, Sy / E, 200)
-    strain = np.concatenate([elastic, true[1:] / E + p[1:]])
-    stress = np.concatenate([E * elastic, true[1:]])
-    nominal = np.expm1(strain)
-    found = reduce_tension(
-        nominal, stress / np.exp(strain), strain_is="engineering", E=None, source="test"
-    )
-    assert found.modulus.value == pytest.approx(E, rel=0.005)
-    expected = K * ((Sy / K) ** (1.0 / n) + found.flow.strain[1:]) ** n
-    assert found.flow.stress[1:] == pytest.approx(expected, rel=0.01)
-    # Considere: a specimen of this law necks at a plastic strain of about n - e0
-    assert found.flow.strain[-1] == pytest.approx(n - (Sy / K) ** (1.0 / n), abs=0.02)
-    assert any("necks" in note for note in found.notes)
-
-
-def pull(E=70e9, Sy=300e6, rises=500e6, to=0.1, rows=200):
-    """Strain and stress of a metal that hardens in a straight line."""
-    p, rise = np.linspace(0.0, to, rows), np.linspace(0.0, Sy / E, 40)
-    true = Sy + rises * p
-    return np.append(rise, true[1:] / E + p[1:]), np.append(E * rise, true[1:])
-
-
-def reduced(strain, stress, E=None):
-    return reduce_tension(strain, stress, strain_is="true", E=E, source="test")
-
-
-def test_a_metal_that_hardens_to_four_times_its_strength_keeps_its_modulus():
-    strain, stress = pull(190e9, 200e6, 1500e6, 0.4, 300)
-    found = reduced(strain + 0.02, stress)  # the machine's own zero
-    assert found.modulus.value == pytest.approx(190e9, rel=0.01)
-    assert found.flow.strength == pytest.approx(200e6, rel=0.03)
-
-
-def test_a_gauge_that_comes_off_at_fracture_takes_nothing_from_the_curve():
-    strain, true = pull()
-    whole, lost = reduced(strain, true), reduced(np.append(strain, 0.0), np.append(true, true[-1]))
-    assert lost.flow.strain[-1] == pytest.approx(whole.flow.strain[-1], rel=1e-3)
-    assert lost.flow.stress == pytest.approx(whole.flow.stress, rel=1e-3)
-
-
-@pytest.mark.parametrize(("stated", "kept"), [(68.9e9, 68.9e9), (200e9, 70e9)])
-def test_a_stated_modulus_stays_and_one_that_the_curve_denies_does_not(stated, kept):
-    found = reduced(*pull(), E=stated)
-    assert found.values["E_Pa"].value == pytest.approx(kept, rel=0.01)
-    assert any("gives way" in note for note in found.notes) == (stated != kept)
 
 
 def test_tension_and_leeb_tables_into_a_set(tmp_path):

@@ -182,10 +182,6 @@ def test_a_workbook_without_a_load_on_its_first_sheet_names_the_others(tmp_path)
     assert found.values["load_N"].value == pytest.approx(TOP, rel=0.005)
 
 
-def _clipped(rows):
-    return np.stack([rows[0], rows[1], np.minimum(rows[2], 0.8 * TOP)])
-
-
 def _hole(rows):
     rows = rows.copy()
     top = int(np.argmax(rows[2]))
@@ -196,7 +192,8 @@ def _hole(rows):
 @pytest.mark.parametrize(
     ("look", "spoil"),
     [
-        ("equal loads", _clipped), ("rows without a number", _hole),
+        ("equal loads", lambda r: np.stack([r[0], r[1], np.minimum(r[2], 0.8 * TOP)])),
+        ("rows without a number", _hole),
         ("the load falls to", lambda r: r[:, : 1 + np.argmax(r[2])]),
         ("rows with a load", lambda r: r[:, ::30]),
         ("times the noise",

@@ -49,6 +49,15 @@ def test_a_light_ball_is_lifted_and_slowed():
     assert UNKNOWN.fall(3.0) == Fall(9.81, math.inf)
 
 
+def bounces_of(truth, time, height, **known):
+    ball = Ball(9.81, truth.mass, truth.diameter, air())
+    return find_bounces(Track(time, height), ball, metres=None, **known).bounces
+
+
+def miss(bounce, truth):
+    return abs(bounce.restitution.value - truth.restitution)
+
+
 def test_rendered_tracks_with_every_fault_are_honest():
     """Drift of the scale, drag, rolling shutter, lost frames, strays, blur, a dip."""
     pulls, errors = [], []
@@ -56,9 +65,7 @@ def test_rendered_tracks_with_every_fault_are_honest():
         truth = random_track(seed)
         track = seen(truth)
         time = track.time + truth.line_time * (track.height.max() - track.height)
-        ball = Ball(9.81, truth.mass, truth.diameter, air())
-        found = find_bounces(Track(time, track.height), ball, metres=None)
-        for bounce in found.bounces:
+        for bounce in bounces_of(truth, time, track.height):
             off = bounce.restitution.value - truth.restitution
             near = int(np.argmin(np.abs(track.contacts - bounce.time.value)))
             assert abs(track.contacts[near] - bounce.time.value) < 2.5 / truth.rate
@@ -78,12 +85,9 @@ def test_a_span_without_samples_is_paid_for():
     found = {}
     for lost in (0.0, 0.08):
         kept = (track.time > contact) | (track.time < contact - lost)
-        ball = Ball(9.81, truth.mass, truth.diameter, air())
-        result = find_bounces(Track(track.time[kept], track.height[kept]), ball, metres=None)
-        bounce = min(result.bounces, key=lambda b: abs(b.time.value - contact))
-        found[lost] = bounce
-        off = abs(bounce.restitution.value - truth.restitution)
-        assert off < 3.0 * bounce.restitution.std
+        result = bounces_of(truth, track.time[kept], track.height[kept])
+        found[lost] = bounce = min(result, key=lambda b: abs(b.time.value - contact))
+        assert miss(bounce, truth) < 3.0 * bounce.restitution.std
     assert found[0.08].approach.std > 1.2 * found[0.0].approach.std
 
 
@@ -94,14 +98,12 @@ def test_a_frame_that_is_missing_in_a_contact_is_found_by_where_the_flights_meet
     gone = int(np.searchsorted(track.time, contact))
     kept = np.arange(track.time.size) != gone
     time = track.time - (np.arange(track.time.size) > gone) / truth.rate
-    ball = Ball(9.81, truth.mass, truth.diameter, air())
-    found = find_bounces(Track(time[kept], track.height[kept]), ball, metres=None)
-    assert len(found.bounces) >= 3
-    for bounce in found.bounces:
-        off = abs(bounce.restitution.value - truth.restitution)
-        assert off < max(3.0 * bounce.restitution.std, 0.003)
+    found = bounces_of(truth, time[kept], track.height[kept])
+    assert len(found) >= 3
+    for bounce in found:
+        assert miss(bounce, truth) < max(3.0 * bounce.restitution.std, 0.003)
         assert bounce.restitution.std < 0.01
-    near = min(found.bounces, key=lambda b: abs(b.time.value - contact))
+    near = min(found, key=lambda b: abs(b.time.value - contact))
     # read as it stands, the contact is off by g/rate of both speeds: e = 0.774
     assert near.restitution.value == pytest.approx(0.8, abs=0.006)
 
@@ -131,11 +133,10 @@ def test_a_fast_contact_that_dents_deeper_is_no_flat_that_drifts():
         pixel=1e-3,
     )  # fmt: skip
     track = seen(truth)
-    ball = Ball(9.81, truth.mass, truth.diameter, air())
     known = Measured(truth.contact_time, 0.0)
-    found = find_bounces(Track(track.time, track.height), ball, metres=None, contact=known)
-    assert len(found.bounces) >= 2
-    for bounce in found.bounces[:2]:
+    found = bounces_of(truth, track.time, track.height, contact=known)
+    assert len(found) >= 2
+    for bounce in found[:2]:
         assert bounce.restitution.value == pytest.approx(0.7, abs=0.0008)
 
 
@@ -143,11 +144,8 @@ def test_a_flight_that_took_in_another_is_not_chosen_for_its_length():
     """A frame lost in mid-flight: the crooked whole is longer than its straight part."""
     truth = random_track(731182)
     track = seen(truth)
-    ball = Ball(9.81, truth.mass, truth.diameter, air())
-    found = find_bounces(Track(track.time, track.height), ball, metres=None)
-    for bounce in found.bounces:
-        off = abs(bounce.restitution.value - truth.restitution)
-        assert off < 3.0 * bounce.restitution.std
+    for bounce in bounces_of(truth, track.time, track.height):
+        assert miss(bounce, truth) < 3.0 * bounce.restitution.std
         assert bounce.restitution.std < 0.004
 
 

@@ -115,14 +115,11 @@ SURE = {name: f"{name},baseline,1\n" for name in SETS}
     ("text", "told"),
     [
         (HEAD + "".join(list(SURE.values())[1:]), "1 sets without an answer: open-2001"),
-        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,0.7\n"}).values()),
-         "probabilities of open-2007 add to 0.7"),
-        (HEAD + "".join((SURE | {"open-2007": "open-2007,tillt,1\n"}).values()),
-         "did you mean tilt?"),
-        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt+tilt,1\n"}).values()),
-         "unknown name"),
-        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,-1\n"}).values()), "from 0 to 1"),
-        (HEAD + "".join((SURE | {"open-2007": "open-2007,tilt,much\n"}).values()), "finite number"),
+        *((HEAD + "".join((SURE | {"open-2007": f"open-2007,{said}\n"}).values()), told)
+          for said, told in (
+              ("tilt,0.7", "probabilities of open-2007 add to 0.7"),
+              ("tillt,1", "did you mean tilt?"), ("tilt+tilt,1", "unknown name"),
+              ("tilt,-1", "from 0 to 1"), ("tilt,much", "finite number"))),
         (HEAD + "".join(SURE.values()) + "sealed-2001,tilt,1\n",
          "1 sets that are not there, the first 'sealed-2001'"),
         (HEAD + "".join(f"sealed-{k:03d},tilt,1\n" for k in range(1, 61)), "60 sets that are not"),
@@ -209,9 +206,7 @@ def test_scores_by_hand() -> None:
     assert found["nulls named"][1:] == (1.0, 1.0, 1.0)
     assert found["outside named"].value == 0.0
     assert found["said less true"].value == pytest.approx((0.6 + 0.5 + 0.8 + 1.0) / 4 - 0.5)
-    one = found["truth in front"]
-    assert one.low == 0.0
-    assert one.high == 1.0
+    assert (found["truth in front"].low, found["truth in front"].high) == (0.0, 1.0)
     # nobody is surer than the least probability allows
     (mark,) = marks({"a": {"baseline": 1.0}}, {"a": ("tilt", "roughness")})
     assert mark.ln_p == math.log(0.002)

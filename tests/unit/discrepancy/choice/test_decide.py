@@ -125,7 +125,7 @@ def test_a_number_that_leads_is_a_verdict_of_its_own(toy) -> None:
     assert decide(ranking, given).verdict == "wrong-input"
 
 
-def test_a_family_leads_where_its_members_share(case) -> None:
+def test_a_family_leads_where_its_members_share() -> None:
     p = {"strain-rate-hardening": 0.45, "work-hardening": 0.4, "tilt": 0.1, "baseline": 0.05,
          OUTSIDE: 0.0}  # fmt: skip
     names = {k: () if k in ("baseline", OUTSIDE) else (k,) for k in p}
@@ -268,11 +268,8 @@ def test_its_weights_are_a_prior_and_its_departures_are_parts_of_the_value(toy) 
     assert np.sqrt(parts[-1].noise[0, 0] - 1.0) == pytest.approx(RULES.amplitudes[-1])
 
 
-def test_noise_alone_speaks_against_it(toy) -> None:
+def test_noise_alone_speaks_against_it_and_what_no_law_explains_for_it(toy) -> None:
     assert gained(toy, np.random.default_rng(1).standard_normal(CELLS).tolist()) < 0.0
-
-
-def test_what_no_law_explains_is_taken_up(toy) -> None:
     assert gained(toy, [40.0 * (-1) ** k for k in range(CELLS)]) > 100.0
 
 

@@ -10,6 +10,7 @@ import pytest
 from dentscope.discrepancy.choice.decide import decide
 from dentscope.discrepancy.choice.odds import OUTSIDE, Odds
 from dentscope.discrepancy.comparison.cells import cells_of
+from dentscope.discrepancy.comparison.conditions import conditions_of
 from dentscope.discrepancy.comparison.derived import derived_columns
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
@@ -141,12 +142,9 @@ def test_sixty_readings_at_six_heights_are_not_too_few(toy) -> None:
 def repeats(rng, slope, *, conditions=12, each=3, std=0.01, scatter=1.0):
     order = rng.permutation(conditions * each).reshape(conditions, each) / (conditions * each)
     level = rng.normal(0.0, 1.0, conditions)
+    wide = scatter * std * np.sqrt(0.6)
     return [
-        (
-            x,
-            y + slope * x + scatter * std * rng.standard_t(5, each) * np.sqrt(0.6),
-            np.full(each, std),
-        )
+        (x, y + slope * x + wide * rng.standard_t(5, each), np.full(each, std))
         for x, y in zip(order, level, strict=True)
     ]
 
@@ -304,8 +302,6 @@ def test_speeds_are_known_to_three_thousandths_and_those_of_a_fall_to_five(toy, 
 
 
 def test_impacts_within_a_twentieth_of_a_speed_are_one_condition(balls) -> None:
-    from dentscope.discrepancy.comparison.conditions import conditions_of
-
     def count(times):
         rows = HEAD + f"t0,ball,90,1,0.5,\nt1,ball,90,{times},0.5,\n"
         return len(conditions_of(balls(rows, noise={"restitution": 0.005})))
@@ -314,8 +310,6 @@ def test_impacts_within_a_twentieth_of_a_speed_are_one_condition(balls) -> None:
 
 
 def test_a_load_repeats_to_three_thousandths_where_nothing_is_said(balls) -> None:
-    from dentscope.discrepancy.comparison.conditions import conditions_of
-
     head = "trial,striker,load_N,permanent_depth_m\n"
     rows = head + "".join(f"t{k},ball,400,2e-5\n" for k in range(4))
     [c] = conditions_of(balls(rows, noise={"permanent_depth_m_relative": 0.02}))

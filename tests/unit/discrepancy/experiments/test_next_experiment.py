@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments import feasible
+from dentscope.discrepancy.experiments import next_experiment as proposing
 from dentscope.discrepancy.experiments.feasible import again, candidates_of, presses_of, to_build
 from dentscope.discrepancy.experiments.foreseen import (
     Foreseen,
@@ -16,14 +17,6 @@ from dentscope.discrepancy.experiments.foreseen import (
     discrimination,
     foreseen,
     information,
-)
-from dentscope.discrepancy.experiments.next_experiment import (
-    _not_measured,
-    _settling,
-    _sharper,
-    propose,
-    rivals_of,
-    with_half_the_noise,
 )
 from dentscope.discrepancy.experiments.session import chosen, takes
 from dentscope.discrepancy.unknowns.nuisances import Nuisance
@@ -59,9 +52,7 @@ def test_information_ends_at_the_entropy_and_begins_at_nothing() -> None:
     # small gaps: p (1 - p) D by the expansion, with D over twice the one variance
     near = information([of_one(0.0, 1.0), of_one(0.2, 1.0)], [0.5, 0.5])
     assert near == pytest.approx(0.25 * 0.2**2 / 2.0, rel=0.05)
-
-
-def test_rivals_without_probability_tell_nothing() -> None:
+    # rivals without probability tell nothing
     one, two = of_one(0.0, 1.0), of_one(50.0, 1.0)
     assert information([one, two], [0.0, 0.0]) == 0.0
     assert information([one, two], [1.0, 0.0]) == 0.0
@@ -88,7 +79,7 @@ def test_rivals_are_those_that_share_the_probability(toy) -> None:
 
     def names(**p):
         given = Odds({}, {"baseline": 0.0, "a": 0.0, "b": 0.0, "a+b": 0.0, **p})
-        return [f.name for f, _ in rivals_of(ranking, given)]
+        return [f.name for f, _ in proposing.rivals_of(ranking, given)]
 
     # the pair that shares it, not the next single
     assert names(a=0.6, **{"a+b": 0.39})[:2] == ["a", "a+b"]
@@ -105,19 +96,15 @@ def on_rig(toy, **strikers):
     return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=toy.rig_of(**strikers))
 
 
-def test_trials_lie_within_the_rigs_speeds(toy) -> None:
-    given = on_rig(toy, ball=BALL)
-    found = candidates_of(given)
-    assert found
-    assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
-    assert all(c.condition.angle == math.pi / 2.0 for c in found)
-
-
 def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(toy) -> None:
     """Half and 2 m/s are tested; devices D and G know one speed each, as rebound testers do."""
     given = on_rig(toy, ball=BALL)
-    own = [c.condition.speed for c in candidates_of(given)]
+    found = candidates_of(given)
+    own = [c.condition.speed for c in found]
     assert own == pytest.approx([2.0**-0.5, 1.0, 2.0**0.5])
+    assert all(c.condition.angle == math.pi / 2.0 for c in found)
+    # within the rig's speeds
+    assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
     assert [given.conditions[k].speed for k in again(given)] == [0.5, 2.0]
     devices = [toy.condition(2.0, "D"), toy.condition(3.0, "G")]
     shot = replace(on_rig(toy, D=BALL, G=BALL), conditions=tuple(devices))
@@ -131,10 +118,11 @@ def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(to
 
 def test_bodies_that_do_not_yield_leave_nothing_to_scan(toy) -> None:
     elastic = replace(on_rig(toy, ball=BALL), baseline="elastic")
-    assert not {"permanent_depth_m", "dent_diameter_m"} & set(_not_measured(elastic))
-    assert "contact_time_s" in _not_measured(elastic)
+    left, marks = proposing._not_measured(elastic), {"permanent_depth_m", "dent_diameter_m"}
+    assert not marks & set(left)
+    assert "contact_time_s" in left
     assert presses_of(elastic) == []
-    assert {"permanent_depth_m", "dent_diameter_m"} <= set(_not_measured(on_rig(toy, ball=BALL)))
+    assert marks <= set(proposing._not_measured(on_rig(toy, ball=BALL)))
 
 
 def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
@@ -201,7 +189,7 @@ def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None
     base, one = toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 2.0)))
     ranking = toy.ranking_of(given, base, singles=[one])
     shared = odds(baseline=0.5, a=0.5)
-    found, session = propose(Seen(given), ranking, shared, np.random.default_rng(0))
+    found, session = proposing.propose(Seen(given), ranking, shared, np.random.default_rng(0))
     trials = [p for p in found if p.kind == "trial"]
     assert trials[0].change.startswith("ball at 1.4 m/s")
     assert trials[0].information > 2.0 * trials[-1].information
@@ -209,15 +197,16 @@ def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None
     assert session.goes_on
     assert session.steps[0].trial["speed_m_s"] > 1.4
     alone = toy.ranking_of(given, base)
-    assert not propose(Seen(given), alone, odds(baseline=1.0), np.random.default_rng(0))[0]
+    none, _ = proposing.propose(Seen(given), alone, odds(baseline=1.0), np.random.default_rng(0))
+    assert not none
     # a rig that strikes at low speeds only tells nothing, a larger ball at the largest does not
     slow = replace(given, bench=Bench(speeds_m_s=(0.5, 1.0), minutes=Minutes(build=60.0)))
     slow = replace(slow, conditions=slow.conditions[:1] * 2)
-    _, stopped = propose(Seen(slow), ranking, shared, np.random.default_rng(0))
+    _, stopped = proposing.propose(Seen(slow), ranking, shared, np.random.default_rng(0))
     assert not stopped.goes_on
 
 
-def test_what_the_rig_cannot_do_is_not_proposed(toy, monkeypatch) -> None:
+def test_what_the_rig_cannot_do_is_not_proposed(toy) -> None:
     assert takes(Bench(), "press") == 5.0
     some = Bench(minutes=Minutes(strike=2.0, weigh=3.0))
     assert [takes(some, k) for k in ("strike", "weigh", "change")] == [2.0, 3.0, 10.0]
@@ -232,7 +221,7 @@ def test_a_hardness_that_is_stated_is_not_tested_again(toy) -> None:
     both = [SimpleNamespace(name=f"strikers.{name}.Sy_Pa") for name in ("ball", "larger")]
     given = SimpleNamespace(nuisances=both, wrong_numbers=(), bench=Bench(), rig=rig)
     plan = SimpleNamespace(problem=given, cells=[], settled=[], options=[])
-    _settling(plan)
+    proposing._settling(plan)
     assert [one.key for one in plan.settled] == ["strikers.larger.Sy_Pa"]
 
 
@@ -294,7 +283,7 @@ def test_half_the_noise_brings_what_the_curvature_says(toy) -> None:
     names = ("rebound_speed_m_s", "tangential_rebound_m_s")
     given = replace(given, cells=replace(given.cells, observable=names))
     best = toy.fit_of([15.0, 5.0], toy.Effect("a", (30.0, 10.0)))
-    first = _sharper(given, best)[0]
+    first = proposing._sharper(given, best)[0]
     assert first.change.startswith("halve the noise of rebound speed")
     expected = math.sqrt((900.0 + 100.0 + 12.0) / (3600.0 + 100.0 + 12.0))
     assert first.interval == pytest.approx(expected, rel=1e-6)
@@ -304,7 +293,7 @@ def test_where_other_errors_rule_nothing_is_to_be_gained(toy) -> None:
     given = toy.problem([0.0, 0.0])
     J = [[30.0], [10.0]]
     best = toy.fit_of([15.0, 5.0], toy.Effect("a", (30.0, 10.0)), J=J)
-    first = _sharper(given, best)[0]
+    first = proposing._sharper(given, best)[0]
     assert first.kind == "none"
     assert first.change.startswith("nothing more to gain for size")
 
@@ -314,10 +303,10 @@ def test_half_the_noise_of_cells_that_share_a_reading_is_still_a_covariance() ->
     noise = np.full((3, 3), 4.0) + 0.04 * np.eye(3)
     total = noise + 0.01 * np.eye(3)
     every = np.ones(3, dtype=bool)
-    assert with_half_the_noise(total, noise, every) == pytest.approx(
+    assert proposing.with_half_the_noise(total, noise, every) == pytest.approx(
         0.25 * noise + 0.01 * np.eye(3)
     )
-    one = with_half_the_noise(total, noise, np.array([True, False, False]))
+    one = proposing.with_half_the_noise(total, noise, np.array([True, False, False]))
     assert one[0] == pytest.approx([1.02, 2.0, 2.0])
     assert np.linalg.eigvalsh(one).min() > 0.0
     assert np.linalg.eigvalsh(total - np.diag(0.75 * np.diag(noise))).min() < 0.0

@@ -48,44 +48,37 @@ def test_a_place_settles_at_a_twelfth_of_the_prior(shifted) -> None:
 
 
 @pytest.mark.parametrize(("best", "gone"), [(0.1, 0.1), (0.3, 0.25), (0.6, 0.5), (0.9, 1.0)])
-def test_of_a_step_the_best_of_a_tenth_a_quarter_a_half_and_all_is_gone(toy, best, gone) -> None:
+def test_of_a_step_the_best_of_a_tenth_a_quarter_a_half_and_all_is_gone(
+    toy, shifted, best, gone
+) -> None:
     """One cell that shows ten times how far the unknown is from where the data have it."""
-
-    class Off(toy.Simulator):
-        def predict(self, mechanisms, points):
-            return np.array([10.0 * np.abs(p.z - best) for p in points])
-
-    given = toy.problem([0.0], derivative=[[0.0]])
-    found = replace(toy.fit_of([0.0], J=[[1.0]]), z=np.array([1.0]), place=NOWHERE)
-    after, _, _ = tried_steps(Off(given), found, np.zeros(1), NOWHERE)
-    assert after == pytest.approx([gone])
+    off = toy.Simulator(
+        toy.problem([0.0], derivative=[[0.0]]),
+        lambda _, points: np.array([10.0 * np.abs(p.z - best) for p in points]),
+    )
+    assert tried_steps(off, shifted(1.0), np.zeros(1), NOWHERE)[0] == pytest.approx([gone])
 
 
 @pytest.mark.parametrize(("fall", "settled"), [(0.09, True), (0.11, False)])
-def test_a_fall_of_chi2_by_a_tenth_is_none(toy, fall, settled) -> None:
+def test_a_fall_of_chi2_by_a_tenth_is_none(toy, shifted, fall, settled) -> None:
     """Chi2 falls evenly with the step, but for the unknown's own square that is taken off."""
-
-    class Falling(toy.Simulator):
-        def predict(self, mechanisms, points):
-            return np.array([np.sqrt(4.0 - fall * p.z - p.z**2) for p in points])
-
-    given = toy.problem([0.0], derivative=[[0.0]])
-    found = replace(toy.fit_of([0.0], J=[[1.0]]), z=np.array([1.0]), place=NOWHERE)
-    assert tried_steps(Falling(given), found, np.zeros(1), NOWHERE)[2] is settled
+    falling = toy.Simulator(
+        toy.problem([0.0], derivative=[[0.0]]),
+        lambda _, points: np.array([np.sqrt(4.0 - fall * p.z - p.z**2) for p in points]),
+    )
+    assert tried_steps(falling, shifted(1.0), np.zeros(1), NOWHERE)[2] is settled
 
 
 def test_a_fit_has_four_rounds(toy) -> None:
     """An unknown that never settles: each round asks for where it then stands."""
     asked = []
 
-    class Restless(toy.Simulator):
-        def predict(self, mechanisms, points):
-            asked.append(float(points[0].z[0]))
-            # the data are always as far off in the other direction
-            return np.array([[9.0 * (-1.0) ** len(asked) + p.z[0]] for p in points])
+    def restless(_, points):
+        asked.append(float(points[0].z[0]))
+        # the data are always as far off in the other direction
+        return np.array([[9.0 * (-1.0) ** len(asked) + p.z[0]] for p in points])
 
-    given = toy.problem([0.0], derivative=[[1.0]])
-    fit(Restless(given), ())
+    fit(toy.Simulator(toy.problem([0.0], derivative=[[1.0]]), restless), ())
     assert len(asked) == 4
 
 
@@ -108,15 +101,11 @@ def bumped(toy, spread, nodes=5):
     """A fit whose posterior has a deviation of a part of the prior, and how often it is made."""
     size = Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=nodes)
     effect = toy.Effect("m", (1.0 / spread,), parameters=(size,))
-    data = [0.5 / spread]
     made = []
-
-    class Counting(toy.Simulator):
-        def predict(self, mechanisms, points):
-            made.extend(p.values["m"]["size"] for p in points if "m" in p.values)
-            return super().predict(mechanisms, points)
-
-    simulator = Counting(toy.problem(data))
+    simulator = toy.Simulator(
+        toy.problem([0.5 / spread]),
+        seen=lambda _, points: made.extend(p for p in points if "m" in p.values),
+    )
     found = expand(simulator, (effect,), Grid((Axis("m", size),)), NOWHERE, np.array([0.5]), None)
     made.clear()
     return sharpened(simulator, found), made
@@ -155,16 +144,11 @@ def test_two_mechanisms_of_four_parameters_are_simulated_at_all_nodes_of_both(to
         axes = (*(Axis("a", p) for p in sizes), Axis("b", effects[1].parameters[0]))
         grid = Grid(axes, ((0.4, 0.6),) * (n + 1))
         asked = []
-
-        class Counting(toy.Simulator):
-            def predict(self, mechanisms, points):
-                asked.append((len(mechanisms), len(points)))
-                return super().predict(mechanisms, points)
-
-        here = np.array([1.0])
-        place = np.full(n + 1, 0.5)
-        refined(Counting(toy.problem([1.0])), effects, grid, NOWHERE, place, here)
-        return asked[0][0]
+        counting = toy.Simulator(
+            toy.problem([1.0]), seen=lambda mechanisms, _: asked.append(len(mechanisms))
+        )
+        refined(counting, effects, grid, NOWHERE, np.full(n + 1, 0.5), np.array([1.0]))
+        return asked[0]
 
     assert [together(3), together(4)] == [2, 1]
 
@@ -198,12 +182,9 @@ def test_fits_that_gain_ten_nats_and_six_tenths_of_the_best_are_sharpened(toy) -
     def again(*gains):
         """Places of fits, by their gain, that were made again."""
         asked = set()
-
-        class Counting(toy.Simulator):
-            def predict(self, mechanisms, points):
-                asked.update(m.name for m in mechanisms)
-                return super().predict(mechanisms, points)
-
+        counting = toy.Simulator(
+            toy.problem([0.0] * 8), seen=lambda some, _: asked.update(m.name for m in some)
+        )
         base = toy.fit_of([0.0] * 8)
         effects, shapes = library_of(toy, *[2000.0] * len(gains))
         fits = [
@@ -212,7 +193,7 @@ def test_fits_that_gain_ten_nats_and_six_tenths_of_the_best_are_sharpened(toy) -
             )
             for e, s, gain in zip(effects, shapes, gains, strict=True)
         ]  # fmt: skip
-        sharpened_leading(Counting(toy.problem([0.0] * 8)), fits, base)
+        sharpened_leading(counting, fits, base)
         return sorted(asked)
 
     assert again(9.9) == []
@@ -292,13 +273,10 @@ def test_a_pair_is_screened_with_the_numbers_of_its_fit_free(toy) -> None:
 def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy) -> None:
     seen = set()
 
-    class Counting(toy.Simulator):
-        def predict(self, mechanisms, points):
-            if len(mechanisms) == 2:
-                seen.update(p.values["a"]["size"] for p in points)
-            return super().predict(mechanisms, points)
+    def look(some, points):
+        seen.update(p.values["a"]["size"] for p in points if len(some) == 2)
 
-    a, b = toy.Effect("a", (1.0,)), toy.Effect("b", (2.0,))
-    both = pair_effect(Counting(toy.problem([0.0])), screened_fully(toy, a), screened_fully(toy, b))
+    a, b = (screened_fully(toy, toy.Effect(n, (x,))) for n, x in (("a", 1.0), ("b", 2.0)))
+    both = pair_effect(toy.Simulator(toy.problem([0.0]), seen=look), a, b)
     both(NOWHERE, np.array([0.5, 0.5]))
     assert sorted(seen) == pytest.approx([0.38, 0.5, 0.62])

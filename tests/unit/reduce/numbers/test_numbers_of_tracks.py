@@ -1,4 +1,4 @@
-"""Tuned numbers of bouncing bodies where they act, in cases that are worked out by hand."""
+"""Tuned numbers of bouncing bodies and of what all reductions share, worked out by hand."""
 
 import math
 from dataclasses import replace
@@ -7,12 +7,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.reduce.bounces import contacts, flights, touch
-from dentscope.reduce.bounces.chain import _longest, chain_of
+from dentscope.reduce.bounces.chain import _longest, _without_false_ends, _without_strays, chain_of
 from dentscope.reduce.bounces.contacts import _on_one_flat, find_bounces
 from dentscope.reduce.bounces.flights import Piece, _clean_starts, _Fit, _fitted, _next_blocks, side
 from dentscope.reduce.bounces.joint import Before, _cleaned, _untrimmed, fit_together
 from dentscope.reduce.bounces.options import BallOptions, BounceOptions
-from dentscope.reduce.bounces.scale import Scale, _belief, check_scale, floor_drift, frames_lost
+from dentscope.reduce.bounces.scale import (
+    Scale,
+    _belief,
+    check_scale,
+    floor_drift,
+    frames_lost,
+    scale_of,
+)
 from dentscope.reduce.bounces.sides import _Falls, _same_fall, known_before
 from dentscope.reduce.bounces.times import BouncedTimes, _unsure_contact, reduce_bounce_times
 from dentscope.reduce.bounces.touch import (
@@ -25,8 +32,13 @@ from dentscope.reduce.bounces.touch import (
 from dentscope.reduce.bounces.track import Track, on_the_body
 from dentscope.reduce.bounces.view import Launch, Stage, View
 from dentscope.reduce.gates import Refused
+from dentscope.reduce.images.clip import repeated_frames
 from dentscope.reduce.measured import Measured
+from dentscope.reduce.mocap.rigid import _is_line
+from dentscope.reduce.scan.noise import autocovariance
+from dentscope.reduce.shared.regression import robust_regression, unit_covariance
 from made_records import refused
+from scipy.linalg import hilbert
 
 NO_FALL = View(0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -246,8 +258,8 @@ def test_contacts_lie_within_a_twentieth_of_the_reach(height, left) -> None:
     assert len(_on_one_flat(found, STAGE)) == left
 
 
-def piece(index, sigma=1e-9):
-    return Piece(np.asarray(index), 0.0, Launch(0.0, 1.0), sigma)
+def piece(index, speed=1.0, sigma=1e-9):
+    return Piece(np.asarray(index), 0.0, Launch(0.0, speed), sigma)
 
 
 @pytest.mark.parametrize(
@@ -299,15 +311,14 @@ def test_six_samples_to_both_sides_say_12_each_at_most(monkeypatch) -> None:
     """They lie on both flights to the last digit: no contact reaches them."""
     time = 1e-3 * (np.arange(60.0) - 29.5)
     track = Track(time, np.abs(time))
-    before = Piece(np.arange(30), 0.0, Launch(0.0, -1.0), 1e-9)
-    after = Piece(np.arange(30, 60), 0.0, Launch(0.0, 1.0), 1e-9)
-    found = likely(monkeypatch, track, (before, after))
+    both = piece(range(30), -1.0), piece(range(30, 60))
+    found = likely(monkeypatch, track, both)
     # of 20 ms, ten to each side
     assert found[-1] == -12.0 * 6 * 2
     assert found[0] == 0.0
     # flights of strays, one of which goes on through the flat
     with np.errstate(all="raise"):
-        assert np.isfinite(likely(monkeypatch, track, (before, after), -0.9999)).all()
+        assert np.isfinite(likely(monkeypatch, track, both, -0.9999)).all()
 
 
 @pytest.mark.parametrize(
@@ -321,17 +332,17 @@ def test_a_soft_contact_bends_as_a_spring_does_within_limits(part, possible, mon
     above = part * (late - half * math.sin(0.5 * math.pi * late / half) / (0.5 * math.pi))
     time = np.array([-gap, gap])
     track = Track(time, gap + above * np.ones(2))
-    before = Piece(np.array([0]), 0.0, Launch(0.0, -1.0), 1e-12)
-    after = Piece(np.array([1]), 0.0, Launch(0.0, 1.0), 1e-12)
-    found = likely(monkeypatch, track, (before, after))
+    found = likely(monkeypatch, track, (piece([0], -1.0, 1e-12), piece([1], 1.0, 1e-12)))
     assert (found[k] == 0.0) == possible
 
 
-@pytest.mark.parametrize(("off", "kept"), [(3.9, 60), (4.1, 56)])
-def test_no_body_is_three_times_as_fast_as_it_mostly_is(off, kept) -> None:
-    """It moves with 1 a sample; four samples lie higher: from them it comes back with 1 less."""
+@pytest.mark.parametrize(
+    ("held", "off", "kept"), [(4, 3.9, 60), (4, 4.1, 56), (5, 50.0, 55), (6, 50.0, 60)]
+)
+def test_no_body_is_three_times_as_fast_as_it_mostly_is_but_for_six_samples(held, off, kept):
+    """It moves with 1 a sample; some lie higher: from them it comes back with 1 less."""
     height = np.arange(60.0)
-    height[30:34] += off
+    height[30 : 30 + held] += off
     assert on_the_body(Track(np.arange(60.0), height)).size == kept
 
 
@@ -362,3 +373,105 @@ def test_a_scale_drifts_by_one_three_or_rarely_ten_hundredths() -> None:
     _, solutions = fit_together(track, [one], STAGE, view, before)
     beliefs = {round(math.sqrt(s.covariance[2, 2]) / 1e-9, 4): s.weight for s in solutions}
     assert beliefs == pytest.approx({0.01: 1 / 2.05, 0.03: 1 / 2.05, 0.1: 0.05 / 2.05}, rel=1e-3)
+
+
+def test_a_fall_known_to_a_tenth_gives_a_scale() -> None:
+    known, vague = Measured(981.0, 95.0), Measured(981.0, 100.0)
+    assert scale_of(known, 9.81, None).metres.value == pytest.approx(0.01)
+    assert math.isnan(scale_of(vague, 9.81, None).metres.value)
+
+
+def test_two_scales_agree_within_three_deviations() -> None:
+    stated = Measured(0.01, 1e-4)
+    # the fall's scale has an error of 1 % as well: 1.41 % together
+    near = scale_of(Measured(981.0 / 1.042, 9.81 / 1.042), 9.81, stated)
+    far = scale_of(Measured(981.0 / 1.045, 9.81 / 1.045), 9.81, stated)
+    assert near.origin == "gravity and what is stated"
+    assert far.origin == "what is stated, against gravity"
+
+
+@pytest.mark.parametrize(("late", "left"), [(0.09, 6), (0.11, 5)])
+def test_an_end_that_is_a_tenth_off_is_a_knock(late, left) -> None:
+    """Flights of 0.8 of the one before; the last longer by a part of itself."""
+    flights = 0.8 ** np.arange(5)
+    flights[-1] *= math.exp(late)
+    times = np.append(0.0, np.cumsum(flights))
+    kept, _, ends = _without_false_ends(times, tuple(range(6)), (True,) * 5)
+    assert (len(kept), ends) == (left, 6 - left)
+
+
+def test_a_shape_of_one_to_a_hundred_is_a_line() -> None:
+    assert _is_line(np.diag([1.0, 0.009, 0.0]))
+    assert not _is_line(np.diag([1.0, 0.011, 0.0]))
+
+
+def test_a_frame_repeats_where_it_changes_by_a_third_of_its_neighbours_in_a_fifth_of_all() -> None:
+    def repeats(small: int, every: int = 2) -> int:
+        steps = [small if k % every == 0 else 100 for k in range(39)]
+        levels = 100 + np.cumsum([0, *(s * (-1) ** k for k, s in enumerate(steps))])
+        return repeated_frames(np.broadcast_to(levels[:, None, None], (40, 4, 4))).size
+
+    assert repeats(34) == 20
+    assert repeats(36) == 0
+    assert repeats(34, every=6) == 0
+
+
+def test_a_residual_of_four_robust_deviations_is_left_out() -> None:
+    """Residuals of 1 and -1 in turn: 1.4826 of the median of their size is a deviation."""
+    x = np.arange(100.0)
+    y = np.resize([1.0, -1.0], 100)
+    used = []
+    for size in (5.7, 6.3):
+        moved = y.copy()
+        moved[50] = size
+        used.append(bool(robust_regression(np.stack([np.ones_like(x)], axis=1), moved).used[50]))
+    assert used == [True, False]
+
+
+def test_a_covariance_needs_thirty_pairs() -> None:
+    """Of n points on a line n - k pairs are k apart."""
+    z = np.ones((32, 1))
+    found = autocovariance(z, np.ones((32, 1), dtype=bool), np.array([4, 0]))
+    assert (found.ravel() > 0.0).tolist() == [False, False, *[True] * 5, False, False]
+
+
+def test_a_flight_eight_deviations_off_the_course_is_a_stray() -> None:
+    """Flights of 0.8 of the one before, each off by a thousandth to and fro."""
+
+    def single(off: float) -> int:
+        ratio = 0.8 ** np.arange(12) * np.exp(0.001 * np.resize([1.0, -1.0], 12))
+        ratio[6] *= math.exp(off)
+        times = np.append(0.0, np.cumsum(ratio))
+        kept, _ = _without_strays(times, tuple(range(13)), (True,) * 12)
+        return sum(kept)
+
+    assert single(0.003) == 12
+    assert single(0.1) < 12
+
+
+def test_a_straight_line_has_the_textbooks_covariance():
+    t = np.linspace(0.0, 1.0, 50)
+    found = unit_covariance(np.stack([np.ones_like(t), t - t.mean()], axis=1))
+    assert found == pytest.approx(np.diag([1.0 / 50, 1.0 / np.sum((t - t.mean()) ** 2)]))
+
+
+@pytest.mark.parametrize("size", [4, 8, 12, 20])
+def test_no_variance_is_negative_however_alike_the_columns(size):
+    covariance = unit_covariance(hilbert(size))
+    assert np.array_equal(covariance, covariance.T)
+    assert np.all(np.diag(covariance) >= 0.0)
+    assert np.linalg.eigvalsh(covariance)[0] >= -1e-12 * np.linalg.eigvalsh(covariance)[-1]
+
+
+def test_readings_almost_without_noise_have_a_covariance():
+    # two unknowns that only rounding tells apart, as the spin of a body that hardly turns
+    t = np.linspace(0.0, 1.0, 200)
+    design = np.stack([np.ones_like(t), t, t + 1e-9 * t**2, t**2], axis=1)
+    fit = robust_regression(design, design @ [1.0, 2.0, 0.0, 3.0], floor=1e-7)
+    assert np.all(np.isfinite(np.sqrt(np.diag(fit.covariance))))
+    assert np.all(np.isfinite(fit.prediction_std(design)))
+
+
+def test_a_column_that_no_reading_sees_has_no_variance():
+    design = np.stack([np.ones(10), np.zeros(10)], axis=1)
+    assert unit_covariance(design) == pytest.approx(np.diag([0.1, 0.0]))

@@ -1,22 +1,28 @@
-"""Tables: readers, pulses of known shape, heights, rows of trials; real pulses and tracks."""
+"""Tables and channels: readers, pulses, heights, rows of trials; real pulses and tracks."""
 
 import csv
 import math
+import sys
 from pathlib import Path
 
+import h5py
+import made_records
 import numpy as np
 import pytest
 from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.table.channels import channels_of
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.heading import unit_in
 from dentscope.reduce.table.pulse import find_pulse
+from made_files import put
 from raw_files import bouncing
 from scipy.integrate import solve_ivp
 
 REAL = Path(__file__).parents[5] / "shared" / "recordings"
+PIXELS = {"value_unit": "px", "upwards": "down", "rate_hz": 200.0}
 measured = pytest.mark.skipif(not REAL.exists(), reason="the recordings are not here")
 
 
@@ -76,10 +82,8 @@ def test_heights_with_and_without_a_unit(tmp_path):
     np.savetxt(tmp_path / "px.txt", table, header="frame row", comments="")
     np.savetxt(tmp_path / "mm.csv", np.stack([t, 1e3 * height], axis=1), delimiter=",",
                header="t_s,height_mm", comments="")  # fmt: skip
-    kind = load_kind("table")
-    pixels = {"holds": "height", "value_unit": "px", "upwards": "down", "rate_hz": 200.0}
-    for name, given in (("px.txt", pixels), ("mm.csv", {"holds": "height"})):
-        reduced = kind.run(tmp_path / name, given, source="test")
+    for name, given in (("px.txt", PIXELS), ("mm.csv", {})):
+        reduced = made_records.run(tmp_path / name, holds="height", **given)
         first = reduced.trials[0].observables
         assert first["restitution"].value == pytest.approx(0.8, abs=0.003)
         assert first["impact_speed_m_s"].value == pytest.approx(3.13, rel=0.005)
@@ -125,7 +129,7 @@ def test_text_tables(tmp_path, text, names, first):
 )
 def test_a_column_is_found_by_what_it_is(tmp_path, text, holds):
     (tmp_path / "a.csv").write_text(text)
-    found = load_kind("table").run(tmp_path / "a.csv", {"holds": holds}, source="test")
+    found = made_records.run(tmp_path / "a.csv", holds=holds)
     assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8])
 
 
@@ -134,17 +138,13 @@ def test_a_unit_stands_in_a_line_of_its_own():
 
 
 @measured
-@pytest.mark.parametrize(
-    ("name", "sheets", "e"), [("60", "1", 0.54), ("140", "1", 0.53), ("340", "1", 0.24)]
-)
-def test_marble_on_paper(name, sheets, e):
+@pytest.mark.parametrize(("name", "e"), [("60", 0.54), ("140", 0.53), ("340", 0.24)])
+def test_marble_on_paper(name, e):
     # quick look of the source's description, from parabolas over 14 frames
-    given = {"holds": "height", "value": "3", "value_unit": "px", "upwards": "down",
-             "rate_hz": 200.0}  # fmt: skip
     found = []
     for repeat in (1, 2, 3):
         file = REAL / f"marble-on-paper-a4/a4/{repeat}-{name}-M.csv"
-        reduced = load_kind("table").run(file, given, source="test")
+        reduced = made_records.run(file, holds="height", value="3", **PIXELS)
         found.append(reduced.trials[0].observables["restitution"].value)
         speed = reduced.trials[0].observables["impact_speed_m_s"].value
         # released from rest near the highest place that is seen; gravity gives the size of a pixel
@@ -159,12 +159,11 @@ def test_shock_of_a_drop_tower():
     # the fixture's two accelerometers see one pulse: top and bottom agree
     found = {}
     for number in (5, 6):
-        given = {"holds": "acceleration", "value": "2", "value_unit": "kg"}
         file = REAL / f"shock-drop-package/accel_{number}.csv"
-        reduced = load_kind("table").run(file, given, source="test")
-        found[number] = reduced.values
-    for key, part in (("peak_acceleration_m_s2", 0.1), ("speed_change_m_s", 0.1)):
-        assert found[5][key].value == pytest.approx(found[6][key].value, rel=part)
+        given = {"holds": "acceleration", "value": "2", "value_unit": "kg"}
+        found[number] = made_records.run(file, **given).values
+    for key in ("peak_acceleration_m_s2", "speed_change_m_s"):
+        assert found[5][key].value == pytest.approx(found[6][key].value, rel=0.1)
 
 
 @pytest.mark.parametrize("swings_in", [1.2, 3.0, 7.0])
@@ -184,12 +183,93 @@ def test_rebounds_find_their_drops_and_the_unit_of_each_column(tmp_path):
         "Nr;Fallhöhe (m);h1 (cm);h2 (mm);e (%);Eindruckdurchmesser (mm);SD (mm);Mittel (cm)\n"
         "1;1,00;64,0;640;80;1,2;3,0;60\n2;0,50;32,0;320;80;1,1;2,0;30\nMittelwert;0,75;40;400;;1;2;\n"
     )
-    (tmp_path / "a.csv").write_text(text, "utf-8")
-    found = load_kind("table").run(tmp_path / "a.csv", {"holds": "rebounds"}, source="test")
+    found = made_records.run(put(tmp_path / "a.csv", text), holds="rebounds")
     assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8] * 4)
-    (tmp_path / "a.csv").write_text("Fallhöhe (m),h1 (cm)\n1,00,64,0\n", "utf-8")
-    with pytest.raises(InputError, match=r"'1,00,64,0': 4 cells below 2 headers"):
-        load_kind("table").run(tmp_path / "a.csv", {"holds": "rebounds"}, source="test")
-    (tmp_path / "b.csv").write_text("cm,up,up\n100 ,64,63\n50,32,31\n")
-    with pytest.raises(InputError, match="no column is named as a drop height"):
-        load_kind("table").run(tmp_path / "b.csv", {"holds": "rebounds"}, source="test")
+    for wrong, told in (
+        ("Fallhöhe (m),h1 (cm)\n1,00,64,0\n", r"'1,00,64,0': 4 cells below 2 headers"),
+        ("cm,up,up\n100 ,64,63\n50,32,31\n", "no column is named as a drop height"),
+    ):
+        with pytest.raises(InputError, match=told):
+            made_records.run(put(tmp_path / "a.csv", wrong), holds="rebounds")
+
+
+SAMPLES_S = 2e5
+TIME = np.arange(3000) / SAMPLES_S
+FORCE = 900.0 * np.sin(np.pi * np.clip((TIME - 4e-3) / 3e-3, 0.0, 1.0))
+FORCE = FORCE + np.random.default_rng(0).normal(0.0, 0.5, TIME.size)
+
+
+def tdms(path):
+    nptdms = pytest.importorskip("nptdms")
+    waveform = {"wf_increment": 1.0 / SAMPLES_S, "unit_string": "Newtons"}
+    with nptdms.TdmsWriter(str(path)) as writer:
+        writer.write_segment([
+            nptdms.ChannelObject("Hammer", "Force", FORCE, properties=waveform),
+            nptdms.ChannelObject("Hammer", "Status", np.array([1.0, 2.0])),
+            nptdms.ChannelObject("Notes", "who", ["a", "b"]),
+        ])  # fmt: skip
+    return path
+
+
+def hdf5(path, *, timed=True):
+    with h5py.File(path, "w") as file:
+        group = file.create_group("run 1")
+        group["note"] = "no number"
+        if timed:
+            group["time"] = 1e3 * TIME
+            group["time"].attrs["units"] = "ms"
+        else:
+            group.attrs["sampling_rate"] = SAMPLES_S
+        group["Load"] = FORCE / 1e3
+        group["Load"].attrs["unit"] = b"kN"
+        file["both"] = np.stack([TIME, FORCE])
+    return path
+
+
+@pytest.mark.parametrize(
+    ("make", "end", "sheet"),
+    [
+        (tdms, ".tdms", "Hammer"), (tdms, ".tdms", ""), (hdf5, ".h5", "run 1"),
+        (lambda path: hdf5(path, timed=False), ".hdf5", "/run 1"), (hdf5, ".h5", "both"),
+    ],
+)  # fmt: skip
+def test_a_pulse_is_read_from_its_channels(make, end, sheet, tmp_path):
+    options = {"holds": "force", "sheet": sheet}
+    if sheet == "both":
+        options["value_unit"] = "N"
+    if end == ".h5" and sheet == "run 1":  # HDF5 sorts its names
+        options |= {"time": "time", "value": "Load"}
+    found = load_kind("table").run(make(tmp_path / f"a{end}"), options, source="test")
+    peak, lasts = found.values["peak_force_N"], found.values["contact_time_s"]
+    assert abs(peak.value - 900.0) < 3.0 * peak.std
+    assert abs(lasts.value - 3e-3) < 3.0 * lasts.std
+    assert lasts.std < 1e-4
+
+
+def test_rows_are_selected_by_what_a_channel_holds(tmp_path):
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file["toss"], file["x"] = np.repeat([1.0, 2.0], 5), np.arange(10.0)
+    table = read_columns(path).select("toss=2.0")
+    assert table.values[:, 1].tolist() == [5.0, 6.0, 7.0, 8.0, 9.0]
+    assert len(table.cells) == 5
+
+
+@pytest.mark.parametrize("end", [".tdms", ".h5"])
+def test_a_file_that_is_none_of_its_kind_is_one_line(end, tmp_path):
+    path = tmp_path / f"a{end}"
+    path.write_bytes(b"no such file" * 20)
+    with pytest.raises(InputError, match="cannot be read") as refused:
+        read_columns(path)
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_an_unknown_group_names_those_there_are(tmp_path):
+    with pytest.raises(InputError, match=r"sheet: no group 'run 9' .*run 1"):
+        read_columns(hdf5(tmp_path / "a.h5"), sheet="run 9")
+
+
+def test_a_missing_reader_is_named(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "nptdms", None)
+    with pytest.raises(InputError, match=r"reading TDMS .*dentscope\[tables\]"):
+        channels_of(tmp_path / "a.tdms", "")

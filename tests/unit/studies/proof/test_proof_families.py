@@ -22,6 +22,12 @@ from dentscope.studies.proof.generators.truth import FAMILIES
 LAWS = [at.CAVITY, at.FOUNDATION]
 
 
+def put(p, **given):
+    for key, value in given.items():
+        p[0, getattr(at, key)] = value
+    return p
+
+
 def row(law, *, speed=2.0, angle=90.0, length=0.3, strength=300e6, **more):
     p = np.zeros((1, at.N_PARAMETERS))
     p[0, at.CAVITY_LAW : at.ROW_LAW] = cavity.COEFFICIENTS
@@ -29,26 +35,21 @@ def row(law, *, speed=2.0, angle=90.0, length=0.3, strength=300e6, **more):
     radius = 4.5e-3
     mass = 7800.0 * math.pi * radius**2 * 0.3
     inertia = mass * (length**2 / 12.0 + radius**2 / 4.0)
-    given = {
+    usual = {
         "MASS": mass, "LENGTH": length, "INERTIA": inertia, "TIP": 9e-3,
         "THETA": math.radians(angle), "NORMAL_SPEED": speed, "LAW": law, "MODULUS": 110e9,
         "STRENGTH": strength, "MU": 0.15, "STEPS": 1500, "FOLLOW": 1e-6,
-    } | more  # fmt: skip
-    for key, value in given.items():
-        p[0, getattr(at, key)] = value
-    return p
+    }  # fmt: skip
+    return put(p, **usual | more)
 
 
 def with_beam(p, *, E=200e9, radius=4.5e-3):
     area = math.pi * radius**2
-    given = {
-        "BEAM": 30, "BEAM_EA": E * area, "BEAM_EI": E * math.pi * radius**4 / 4.0,
-        "BEAM_GA": E / 2.6 * area * 0.886, "BEAM_ROTARY": 7800.0 * math.pi * radius**4 / 4.0,
-        "BEAM_LOSS": 0.0, "FOLLOW": 4e-4,
-    }  # fmt: skip
-    for key, value in given.items():
-        p[0, getattr(at, key)] = value
-    return p
+    return put(
+        p, BEAM=30, BEAM_EA=E * area, BEAM_EI=E * math.pi * radius**4 / 4.0,
+        BEAM_GA=E / 2.6 * area * 0.886, BEAM_ROTARY=7800.0 * math.pi * radius**4 / 4.0,
+        BEAM_LOSS=0.0, FOLLOW=4e-4,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -110,9 +111,8 @@ def test_chain_keeps_energy_of_an_elastic_contact():
 
 
 def test_stiff_chain_is_the_rigid_rod():
-    stiff = with_beam(row(at.CAVITY, angle=55.0), E=2e17)
-    stiff[0, at.FOLLOW] = 1e-6
     rigid = row(at.CAVITY, angle=55.0)
+    stiff = put(with_beam(rigid.copy(), E=2e17), FOLLOW=1e-6)
     a, b = simulate.results_of(stiff)[0], simulate.results_of(rigid)[0]
     # lumped mass and small rotation: a few per mille
     for place in (at.RESTITUTION, at.DEPTH, at.PEAK_FORCE, at.REBOUND_SPIN):
@@ -264,17 +264,15 @@ def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
 @pytest.mark.parametrize("law", LAWS)
 def test_a_modulus_that_falls_gives_more_back_and_digs_no_deeper(law):
     """The energy that returns goes with the compliance of the unloading (a spring's F^2/(2k))."""
-    plain, soft = row(law), row(law)
-    soft[0, at.CHORD], soft[0, at.CHORD_STRAIN] = 0.2, 1e-6
-    one, two = (simulate.results_of(p)[0] for p in (plain, soft))
+    soft = row(law, CHORD=0.2, CHORD_STRAIN=1e-6)
+    one, two = (simulate.results_of(p)[0] for p in (row(law), soft))
     assert (two[at.RESTITUTION] / one[at.RESTITUTION]) ** 2 == pytest.approx(1.2, abs=0.03)
     assert two[at.PEAK_FORCE] == pytest.approx(one[at.PEAK_FORCE], rel=5e-3)
 
 
 def test_another_unloading_is_that_of_its_source():
     """Etsion, Kligerman and Kadin: what is left of a dent of 100 times the depth of first yield."""
-    p = row(at.CAVITY)[0]
-    p[at.OTHER_UNLOADING] = 1.0
+    p = row(at.CAVITY, OTHER_UNLOADING=1.0)[0]
     first = normal._first_yield(p)
     _, _, left = normal._dent(p, 100.0 * first, 0.0)
     x = 100.0

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.studies.proof import apart, calibrated, lists, page, run, score, seal
+from dentscope.studies.proof import apart, calibrated, lists, page, power, run, score, seal
 from dentscope.studies.proof.case import Case, interval, open_run
 from dentscope.studies.proof.lists import Entry
 
@@ -69,7 +69,7 @@ def test_several_writers_leave_the_chain_whole(tmp_path):
     assert sorted(int(e["set"]) for e in seal.Ledger(path).events()) == list(range(60))
 
 
-def test_verdict_after_opening_is_refused(tmp_path, sealed):
+def test_verdict_after_opening_is_refused(sealed):
     ledger = seal.Ledger(sealed / "ledger.jsonl")
     open_run(sealed)
     ledger.add(**(ledger.of("verdict")["set-0000"] | {"cpu_s": 2.0}))
@@ -227,36 +227,28 @@ def test_inclusion_is_counted_mechanism_by_mechanism():
     assert calibrated.calibration_error(cases) == pytest.approx(0.5 * 0.1 + 0.5 * 0.4)
 
 
+def can(kind, change="ball at some speed", striker="ball", **trial):
+    given = {"change": change, "kind": kind, "trial": {"striker": striker, **trial}}
+    found = case("a", "null", [], {"next_experiment": given})
+    found.truth.update(strikers=["ball"], speeds=[0.5, 3.0], angles=[1.5708, 1.5708])
+    return score.feasible(found)
+
+
 def test_a_next_experiment_outside_the_rig_cannot_be_done():
-    def can(kind, speed, striker="ball", change="ball at some speed", angle=90.0):
-        trial = {"striker": striker, "speed_m_s": speed, "angle_deg": angle}
-        given = {"change": change, "kind": kind, "trial": trial}
-        found = case("a", "null", [], {"next_experiment": given})
-        found.truth.update(strikers=["ball"], speeds=[0.5, 3.0], angles=[1.5708, 1.5708])
-        return score.feasible(found)
-
-    assert can("trial", 2.0)
-    assert not can("trial", 12.0)
-    assert not can("trial", 2.0, "another")
-    assert not can("trial", 2.0, angle=45.0)
-    assert can("build", 2.0, "another", "build a ball like ball with a radius of 18 mm")
-    assert not can("build", 2.0, "another")
-    assert can("noise", 99.0)
-    assert can("weigh", 0.0)
-
-
-def test_a_press_needs_a_striker_of_the_rig_and_a_load_of_a_bench():
-    def can(load, striker="ball"):
-        given = {"change": "press it slowly", "kind": "press",
-                 "trial": {"striker": striker, "load_N": load, "repeats": 3.0}}  # fmt: skip
-        found = case("a", "null", [], {"next_experiment": given})
-        found.truth.update(strikers=["ball"])
-        return score.feasible(found)
-
-    assert can(880.0)
-    assert not can(880.0, "another")
-    assert not can(30e3)
-    assert not can(1.0)
+    shot = {"speed_m_s": 2.0, "angle_deg": 90.0}
+    assert can("trial", **shot)
+    assert not can("trial", speed_m_s=12.0, angle_deg=90.0)
+    assert not can("trial", striker="another", **shot)
+    assert not can("trial", speed_m_s=2.0, angle_deg=45.0)
+    assert can("build", "build a ball like ball with a radius of 18 mm", "another", **shot)
+    assert not can("build", striker="another", **shot)
+    assert can("noise", speed_m_s=99.0, angle_deg=90.0)
+    assert can("weigh", speed_m_s=0.0, angle_deg=90.0)
+    # a press needs a striker of the rig and a load of a bench
+    assert can("press", load_N=880.0, repeats=3.0)
+    assert not can("press", striker="another", load_N=880.0, repeats=3.0)
+    assert not can("press", load_N=30e3, repeats=3.0)
+    assert not can("press", load_N=1.0, repeats=3.0)
 
 
 def test_the_first_place_counts_if_the_truth_shows_there_nearly_most():
@@ -292,3 +284,53 @@ def test_state_needs_the_whole_interval():
     assert hits(30, 100, most=0.05) == "missed"
     assert hits(100, 100, least=0.9) == "met"
     assert np.isnan(score.share("x", [], bool).value)
+
+
+def tilted(name, size, verdict, kind="single"):
+    found = case(name, kind, ["tilt"], verdict, size)
+    found.truth["effects"] = []
+    return found
+
+
+TILT = {"verdict": "missing-physics", "mechanisms": ["tilt"]}
+WRONG = {"verdict": "missing-physics", "mechanisms": ["roughness"]}
+CASES = [
+    tilted("a", 3.0, {"verdict": "adequate"}), tilted("b", 12.0, {"verdict": "undetermined"}),
+    tilted("c", 14.0, WRONG), tilted("d", 20.0, TILT), tilted("e", 90.0, TILT),
+    # only sets with one effect have a size of their own
+    tilted("f", 12.0, TILT, "pair"), tilted("g", float("nan"), TILT),
+]  # fmt: skip
+
+
+def test_sets_are_counted_by_the_size_of_their_effect():
+    found = power.by_size(power.shown(CASES))
+    assert found == [
+        (0.0, 5.0, 0, 0, 1), (10.0, 20.0, 1, 0, 2), (20.0, 40.0, 1, 1, 1),
+        (40.0, float("inf"), 1, 1, 1),
+    ]  # fmt: skip
+
+
+def test_the_page_of_a_kept_run_has_plan_power_and_rules(tmp_path):
+    sure = {"verdict": "missing-physics", "names": [["tilt"]], "odds": {"tilt": 0.9}}
+    none = {"verdict": "adequate", "names": [], "odds": {"baseline": 0.84}}
+    peers = [
+        {"set": c.name, "truth": ["tilt"], "acting": 2, "source": "s",
+         "said": {"diagnosis": sure, "BIC": none}, "seconds": {"diagnosis": 8.0, "rules": 2.0}}
+        for c in CASES
+    ]  # fmt: skip
+    entry = page.summary(
+        CASES, which="full", tree="ab" * 32, date="2020-01-01", total=7, peers=peers, plan="cd" * 32
+    )
+    runs = page.keep(entry, tmp_path / "runs.json")
+    assert runs == [entry]
+    kept = json.loads((tmp_path / "runs.json").read_text())
+    page.publish(kept, tmp_path)
+    text = (tmp_path / "proof.md").read_text()
+    assert "The [plan](proof-plan.md), SHA-256 `cdcdcdcdcdcd`, was sealed" in text
+    row = "| 10 to 20 | 2 | 0.50 (0.01 to 0.99) | 0.00 (0.00 to 0.84) |"
+    assert row in (tmp_path / "proof-details.md").read_text()
+    assert "| less | in front, points |" in text
+    assert "| BIC | 100.0 (100.0 to 100.0) | 0.016 | 6.11 (6.11 to 6.11) |" in text
+    assert "Primary mark, 4 points in front: met. 0.2 in mean ln p: met." in text
+    assert "| false alarms on nulls | detected, size above 10 |" in text
+    assert (tmp_path / "pictures" / power.PICTURE).stat().st_size > 10_000

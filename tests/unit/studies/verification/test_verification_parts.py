@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope import fem
+from dentscope.cli import run
 from dentscope.core import InputError, Material, Pair
+from dentscope.studies.commands.verify import EXIT_MISSED
 from dentscope.studies.verification.bench import Bench, Effort, Solved
 from dentscope.studies.verification.calculix.deck import Deck, write_deck
 from dentscope.studies.verification.calculix.output import measure
@@ -88,13 +90,16 @@ def test_results_of_other_numerics_do_not_count(tmp_path):
     assert kept_result(check, folder=tmp_path) is None
 
 
+def reported(name, measured, folder, page):
+    """Measure one check quickly in a folder; return the report's text and that of its rows."""
+    run_checks([check_of(name, lambda bench: measured)], bench=Bench(folder, Effort.QUICK))
+    return write_report(page, folder=folder).read_text(), (folder / "rows.md").read_text()
+
+
 def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
-    check = check_of("patch", lambda bench: result(value=0.7))
-    run_checks([check], bench=Bench(tmp_path, Effort.QUICK))
-    text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
+    text, rows = reported("patch", result(value=0.7), tmp_path, tmp_path / "verification.md")
     assert "- x: 0.7 % (at most 0.3)" in text.split("## A title\n\nMissed:")[1]
     assert "| [A title](#a-title) | 0 of 1, quick |  |" in text
-    rows = (tmp_path / "rows.md").read_text()
     assert "| x | 0.7 % | at most 0.3 | **missed** | a paper |" in rows
     assert "| 1 | 2 |" in rows
     assert "| 1 | 2 |" not in text
@@ -102,24 +107,18 @@ def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
 
 
 def test_a_report_is_renewed_check_by_check(tmp_path):
-    check = check_of("patch", lambda bench: result(value=0.7))
     report = tmp_path / "docs" / "verification.md"
-    run_checks([check], bench=Bench(tmp_path / "a", Effort.QUICK))
-    write_report(report, folder=tmp_path / "a")
-    hertz = check_of("hertz", lambda bench: result("hertz", 0.1))
-    run_checks([hertz], bench=Bench(tmp_path / "b", Effort.QUICK))
-    text = write_report(report, folder=tmp_path / "b").read_text()
+    reported("patch", result(value=0.7), tmp_path / "a", report)
+    text, rows = reported("hertz", result("hertz", 0.1), tmp_path / "b", report)
     assert "x: 0.7 % (" in text  # measured elsewhere, kept beside the report
     assert "| 1 of 1, quick | x: 0.1 % (" in text
-    rows = (tmp_path / "b" / "rows.md").read_text()
     assert rows.count("| x | 0.") == 2
 
 
 def test_the_page_shows_the_number_nearest_to_its_mark(tmp_path):
     many = tuple(Measurement(f"m{k}", 0.1 * k, high=1.0) for k in range(1, 7))
-    check = check_of("patch", lambda bench: replace(result(), measurements=many))
-    run_checks([check], bench=Bench(tmp_path, Effort.QUICK))
-    text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
+    made = replace(result(), measurements=many)
+    text, _ = reported("patch", made, tmp_path, tmp_path / "verification.md")
     assert re.findall(r"\| (m\d):", text) == ["m6"]
 
 
@@ -229,14 +228,7 @@ def test_known_differences_are_found_and_what_a_finer_solve_has_left():
     other = solved(force_factor=1.003, radius_factor=0.99, share=0.602)
     off = _difference(other, solved(), solved()["delta"]).mean(axis=1)
     assert off == pytest.approx([np.log(1.003), np.log(0.99), 0.002, np.log(1.003 / 0.99**2)])
-    trio = [
-        solved(
-            1.0 + x,
-            1.0 + x,
-            0.6 + x,
-        )
-        for x in (4e-4, 2e-4, 1e-4)
-    ]
+    trio = [solved(1.0 + x, 1.0 + x, 0.6 + x) for x in (4e-4, 2e-4, 1e-4)]
     assert _left([trio]) == pytest.approx(1.0, abs=1e-2)
     assert _own(*trio[1:], _left([trio]), "").error[2] == pytest.approx(2e-4, rel=1e-2)
 
@@ -254,20 +246,12 @@ def test_kogut_and_etsion_meet_hertz_at_first_yield_and_their_own_branches():
 
 
 def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, capsys):
-    from dentscope.cli import run
-    from dentscope.studies.commands.verify import EXIT_MISSED
-    from dentscope.studies.verification.result import Measurement, Result, write_result
-
     folder, report = tmp_path / "build", tmp_path / "docs" / "verification.md"
     asked = ["verify", "--only", "patch", "--quick", "--folder", str(folder)]
     asked += ["--report", str(report)]
     assert run(asked) == 0
     assert "Patch test" in report.read_text()
-    missed = Result(
-        name="patch", title="t", about="a", effort="quick",
-        numerics_version=fem.NUMERICS_VERSION,
-        measurements=(Measurement("x", 2.0, "", None, 1.0),),
-    )  # fmt: skip
+    missed = replace(result(value=2.0), effort="quick", numerics_version=fem.NUMERICS_VERSION)
     write_result(missed, folder / "results" / "patch-quick.json")
     assert run(asked) == EXIT_MISSED
     assert "missed: patch: x: 2" in capsys.readouterr().out
