@@ -19,7 +19,7 @@ from .track import Track
 from .view import Launch, Stage, View
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """Samples of one flight, (n,) in order of time, and its motion.
 
