@@ -32,9 +32,8 @@ class Fall:
         if math.isinf(self.terminal):
             return 2.0 * launch / self.gravity
         rise = math.atan(launch / self.terminal)
-        return (
-            self.terminal / self.gravity * (rise + math.atanh(self.landing(launch) / self.terminal))
-        )
+        drop = math.atanh(self.landing(launch) / self.terminal)
+        return self.terminal / self.gravity * (rise + drop)
 
     def launch(self, duration: float) -> float:
         """Return the speed at which a flight of this duration began [m/s]."""
