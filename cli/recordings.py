@@ -187,10 +187,10 @@ def _rows_of(
     from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_sheet
 
+    found = read_sheet(sheet, columns, sheet=of_book)
     strikers = read(folder).setup.strikers
     striker = striker or ("".join(strikers) if len(strikers) == 1 else "")
     one_of(striker, sorted(strikers), key="--striker")
-    found = read_sheet(sheet, columns, sheet=of_book)
     found.refuse_another(strikers[striker], str(sheet), key=f"{folder}: strikers.{striker}")
     told = {"shape": found.shape, "column": "; ".join(columns)}
     store(found.reduced(sheet), place, Row(striker=striker), kind="sheet", options=told)

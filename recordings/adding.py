@@ -27,26 +27,27 @@ def add_trials(
     unless they say of which they are. Every mistake of the rows is a line of one error, by file,
     row and column; nothing is written then.
     """
+    problems = Problems(source or str(rows))
+    table = read_text_table(rows, TRIAL_COLUMNS, problems, free=VARIED)
+    if table is None:
+        raise InputErrors(tuple(problems.found))
+    if "trial" not in table.columns:
+        names = tuple(f"{trial_name(rows)}-{row:03d}" for row in table.rows)
+        columns, cells = ("trial", *table.columns), {"trial": names, **table.cells}
+        table = replace(table, columns=columns, cells=cells)
     read(folder)  # a lock would make the folders around a set that is not there
     # another process may add to the same set: neither's rows must be lost
     with locked(folder):
         before = read(folder)
-        problems = Problems(source or str(rows))
-        table = read_text_table(rows, TRIAL_COLUMNS, problems, free=VARIED)
-        if table is not None and "trial" not in table.columns:
-            names = tuple(f"{trial_name(rows)}-{row:03d}" for row in table.rows)
-            columns, cells = ("trial", *table.columns), {"trial": names, **table.cells}
-            table = replace(table, columns=columns, cells=cells)
-        strikers = frozenset(before.setup.strikers)
-        new = None if table is None else trials_in(table, strikers, problems)
-        if new is not None and table is not None:
+        new = trials_in(table, frozenset(before.setup.strikers), problems)
+        if new is not None:
             for row, name in zip(table.rows, new.trial, strict=True):
                 if name in before.trials.trial:
                     problems.add(f"{shown(name)} is in the set already", row=row, column="trial",
                                  allowed="a name of its own")  # fmt: skip
             if not problems.found:
                 refuse_beyond(replace(before, trials=new), table.rows, problems)
-        if problems.found or new is None or table is None:
+        if problems.found or new is None:
             raise InputErrors(tuple(problems.found))
         old = read_text_table(folder / "trials.csv", TRIAL_COLUMNS, Problems(""), free=VARIED)
         assert old is not None

@@ -243,8 +243,8 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
     trials = read_trials(folder / "trials.csv", strikers, problems)
     names = trials.trial if trials is not None else ()
     mistakes += problems.found
-    traces = _checked_series(folder / "traces", names, mistakes)
-    profiles = _checked_series(folder / "profiles", names, mistakes)
+    traces = series_in(folder / "traces", names, mistakes)
+    profiles = series_in(folder / "profiles", names, mistakes)
     flows = _read_flows(setup, folder, mistakes) if setup is not None else {}
     mistakes += taken_twice(folder / "reduced", names)
     if setup is None or trials is None or mistakes:
@@ -272,10 +272,8 @@ def _read_setup(
     try:
         content, to_fill = without_marks(read_toml(path))
         setup = parse_model(content, SetFile, source=str(path))
-    except InputErrors as several:
-        mistakes += several.errors
     except InputError as error:
-        mistakes.append(error)
+        mistakes += error.errors if isinstance(error, InputErrors) else [error]
     if setup is not None:
         mistakes += (
             InputError(
@@ -302,10 +300,8 @@ def _read_flows(
         try:
             file = file_beside(folder / "set.toml", body.flow_curve, key=f"{key}.flow_curve")
             flows[key] = read_flow_curve(file)
-        except InputErrors as several:
-            mistakes += several.errors
-        except InputError as missing:
-            mistakes.append(missing)
+        except InputError as error:
+            mistakes += error.errors if isinstance(error, InputErrors) else [error]
     return flows
 
 
@@ -398,21 +394,6 @@ def _wider(found: RecordingSet, problems: Problems) -> list[InputError]:
         for k, (d, body) in enumerate(zip(diameter, found.strikers(), strict=False))
         if d > 2.0 * body.tip_radius_m.value
     ]  # fmt: skip
-
-
-def _checked_series(
-    folder: Path, trials: tuple[str, ...], mistakes: list[InputError]
-) -> dict[str, Path]:
-    problems = Problems(str(folder))
-    found = series_in(folder, trials, problems)
-    mistakes += problems.found
-    reader = read_trace if folder.name == "traces" else read_profile
-    for path in found.values():
-        try:
-            reader(path)
-        except InputErrors as several:
-            mistakes += several.errors
-    return found
 
 
 def _without_noise(found: RecordingSet) -> list[InputError]:

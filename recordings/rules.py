@@ -28,11 +28,9 @@ class RecordingRules:
     )  # fmt: skip
     false_alarms_mass: float = rule(
         0.02, "part of clean sets in which a mass may be called wrong, over all strikers [-]",
-        "chosen: one set in fifty",
     )  # fmt: skip
     false_alarms: float = rule(
         0.005, "the same of all other statistical checks of a set together [-]",
-        "chosen: one set in two hundred",
     )  # fmt: skip
     unstated_strength: float = rule(
         0.15, "relative standard deviation of a strength stated without one [-]",
@@ -81,10 +79,7 @@ class RecordingRules:
     unstated_speed: float = rule(
         0.02, "relative standard deviation of an approach speed stated without one [-]"
     )
-    repeats: int = rule(
-        3, "trials at one condition from which a noise may be taken [-]",
-        "two degrees of freedom",
-    )  # fmt: skip
+    repeats: int = rule(3, "trials at one condition from which a noise may be taken [-]")
     speed_bin: float = rule(
         0.02, "relative width within which speeds are one condition [-]",
         "a drop's repeats",

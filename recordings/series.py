@@ -65,20 +65,24 @@ def _read(
     return columns
 
 
-def series_in(folder: Path, trials: tuple[str, ...], problems: Problems) -> dict[str, Path]:
-    """Return the files of a folder by trial; a file without its trial is a mistake."""
-    if not folder.is_dir():
-        return {}
-    found = {}
-    for path in sorted(folder.glob("*.csv")):
-        if path.stem in trials:
-            found[path.stem] = path
-        else:
-            problems.found.append(
-                InputError(
-                    f"there is no trial {path.stem!r}",
-                    source=str(path),
-                    allowed="the name of a trial in trials.csv",
-                )
-            )
+def series_in(folder: Path, trials: tuple[str, ...], mistakes: list[InputError]) -> dict[str, Path]:
+    """Return the files of a folder by trial; what is wrong with them is added to `mistakes`.
+
+    A file without its trial is a mistake, too.
+    """
+    files = sorted(folder.glob("*.csv"))
+    mistakes += [
+        InputError(
+            f"there is no trial {path.stem!r}", source=str(path),
+            allowed="the name of a trial in trials.csv",
+        )
+        for path in files if path.stem not in trials
+    ]  # fmt: skip
+    found = {path.stem: path for path in files if path.stem in trials}
+    reader = read_trace if folder.name == "traces" else read_profile
+    for path in found.values():
+        try:
+            reader(path)
+        except InputErrors as several:
+            mistakes += several.errors
     return found

@@ -196,10 +196,7 @@ class ReductionRules:
     flight_noise: float = rule(
         3.0, "spread of a flight's samples, in that of the track, that is believed [-]"
     )
-    mostly: float = rule(
-        0.6, "part of a block that lies on the flight [-]",
-        "chosen: more than half",
-    )  # fmt: skip
+    mostly: float = rule(0.6, "part of a block that lies on the flight [-]")
     flight_reach: int = rule(
         2, "lengths of a flight's first part within which it is looked for next to the contact [-]"
     )
@@ -219,15 +216,11 @@ class ReductionRules:
         0.75, "speed at which the drag coefficient is taken, in that of the launch [-]",
         "mean over a flight up and down",
     )  # fmt: skip
-    fall_known: float = rule(
-        0.1, "relative error of a fall from which it gives no scale [-]",
-        "chosen: a tenth of the scale says nothing of it",
-    )  # fmt: skip
+    fall_known: float = rule(0.1, "relative error of a fall from which it gives no scale [-]")
     drift_widths: tuple[float, ...] = rule(
         (1e-4, 1e-3, 1e-2),
         "widths of what is believed of a drift [speeds of a fall over a second]",
-        "three decades",
-    )  # fmt: skip
+    )
     missing_frame: float = rule(
         0.02, "part of the contacts in which a frame is missing without a word [-]"
     )
@@ -397,10 +390,7 @@ class ReductionRules:
         0.02, "strain at which a metal yields at most [-]",
         "piano wire: 0.015, a metallic glass: 0.02",
     )  # fmt: skip
-    edge_step: float = rule(
-        0.25, "step along an edge [pixel]",
-        "a quarter",
-    )  # fmt: skip
+    edge_step: float = rule(0.25, "step along an edge [pixel]")
     lean_frames: int = rule(20, "frames from which the lean of a rod is read [-]")
     same_rate: float = rule(
         0.01, "part by which a container's mean rate differs from the camera's and is its own [-]",

@@ -120,16 +120,24 @@ def _found_with(
         except (FloatingPointError, np.linalg.LinAlgError):  # no fall, no drag makes them flights
             return None
         view = solutions[0].view
-        seen = _meetings(body, contacts, stage, pieces, places, solutions)
-        possible = _possible(body, stage, view, pieces, seen)
+        every = (
+            _meeting(body, turning, stage, pieces, places[2 * k : 2 * k + 2], solutions)
+            for k, turning in enumerate(contacts)
+        )
+        seen = [m for m in every if m is not None]
+        possible = common_durations([
+            likely_durations(body, stage, view, m.flights, m.numbers) for m in seen
+        ])  # fmt: skip
         if again:
-            known = [s is not None for s in sides]
-            moved = _moved(body, stage, view, pieces, seen, possible)
+            moved = {
+                m.turning: samples_of(body, stage, view, m.flights, m.turning, m.numbers, lasts)
+                for m, lasts in zip(seen, possible, strict=True)
+            }
             held = [moved.get(turning, (0, 0)) for turning in contacts]
-            sides = sides_of(body, contacts, stage, view, held, known)
+            sides = sides_of(body, contacts, stage, view, held, [s is not None for s in sides])
     found = [
-        _bounce(body, stage, pieces, solutions, meeting, contact, durations)
-        for meeting, durations in zip(seen, possible, strict=True)
+        _bounce(body, stage, solutions, meeting, contact, lasts)
+        for meeting, lasts in zip(seen, possible, strict=True)
     ]
     bounces = _on_one_flat([b for b in found if b is not None], stage)
     if not bounces:
@@ -137,47 +145,14 @@ def _found_with(
     return _whole(bounces, chosen, stage, view, solutions, before, ball, metres, body.step)
 
 
-def _meetings(
-    body: Track, contacts: Sequence[int], stage: Stage, pieces: Sequence[Piece],
-    places: Sequence[int | None], solutions: Sequence[JointSolution],
-) -> list[_Meeting]:  # fmt: skip
-    every = (
-        _meeting(body, turning, stage, pieces, places[2 * k : 2 * k + 2], solutions)
-        for k, turning in enumerate(contacts)
-    )
-    return [m for m in every if m is not None]
-
-
-def _moved(
-    body: Track, stage: Stage, view: View, pieces: Sequence[Piece], seen: Sequence[_Meeting],
-    possible: Sequence[Array],
-) -> dict[int, tuple[int, int]]:  # fmt: skip
-    """By its lowest sample, how many samples beside it a contact has moved."""
-    return {
-        m.turning: samples_of(
-            body, stage, view, (pieces[m.before], pieces[m.after]), m.turning, m.numbers, durations
-        )
-        for m, durations in zip(seen, possible, strict=True)
-    }
-
-
-def _possible(
-    body: Track, stage: Stage, view: View, pieces: Sequence[Piece], seen: Sequence[_Meeting]
-) -> list[Array]:
-    return common_durations([
-        likely_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
-        for m in seen
-    ])  # fmt: skip
-
-
 class _Meeting(NamedTuple):
     """Two flights that meet in a contact."""
 
     turning: int
     """Index of the lowest sample."""
-    before: int
-    after: int
-    """Places of the flights among the pieces."""
+    flights: tuple[Piece, Piece]
+    unknowns: list[int]
+    """Places of what they share, and of their launches, in a solution."""
     numbers: Array
     """What `speeds` gives where they meet."""
     gaps: tuple[float, float]
@@ -195,34 +170,29 @@ def _meeting(
     last, first = _nearest(before, turning, -1), _nearest(after, turning, 1)
     if last is None or first is None:
         return None
-    c = solutions[0].x[_unknowns(b, a)]
+    index = [*range(SHARED), *(SHARED + 2 * p + j for p in (b, a) for j in (0, 1))]
     references = before.reference, after.reference
-    start = speeds(c, stage, references, float(body.time[turning]), (0.0, 0.0))
+    start = speeds(solutions[0].x[index], stage, references, float(body.time[turning]), (0.0, 0.0))
     gaps = float(start[0] - body.time[last]), float(body.time[first] - start[0])
     # a contact lies between its flights: where they meet elsewhere one of them is none
-    return _Meeting(turning, b, a, start, gaps) if min(gaps) >= -body.step else None
-
-
-def _unknowns(before: int, after: int) -> list[int]:
-    return [*range(SHARED), *(SHARED + 2 * p + j for p in (before, after) for j in (0, 1))]
+    there = min(gaps) >= -body.step
+    return _Meeting(turning, (before, after), index, start, gaps) if there else None
 
 
 def _bounce(
-    body: Track, stage: Stage, pieces: Sequence[Piece], solutions: Sequence[JointSolution],
-    meeting: _Meeting, contact: Measured | None, likely: Array,
+    body: Track, stage: Stage, solutions: Sequence[JointSolution], meeting: _Meeting,
+    contact: Measured | None, likely: Array,
 ) -> Bounce | None:  # fmt: skip
-    before, after = pieces[meeting.before], pieces[meeting.after]
-    index = _unknowns(meeting.before, meeting.after)
-    guess = float(body.time[meeting.turning])
+    before, after = meeting.flights
+    view, step, index = solutions[0].view, body.step, meeting.unknowns
+    touch = touch_of(body, stage, view, meeting.flights, meeting.numbers, contact, likely)
+    references, guess = (before.reference, after.reference), float(body.time[meeting.turning])
 
-    def numbers(c: Array, offsets: tuple[float, float]) -> Array:
-        return speeds(c, stage, (before.reference, after.reference), guess, offsets)
+    def numbers(c: Array) -> Array:
+        return speeds(c, stage, references, guess, touch.offsets)
 
-    view, step = solutions[0].view, body.step
-    touch = touch_of(body, stage, view, (before, after), meeting.numbers, contact, likely)
     found = [
-        (s.weight, propagate(lambda c: numbers(c, touch.offsets), s.x[index],
-                             s.covariance[np.ix_(index, index)]))
+        (s.weight, propagate(numbers, s.x[index], s.covariance[np.ix_(index, index)]))
         for s in solutions if s.weight > 0.01
     ]  # fmt: skip
     time, approach, rebound, ratio, height = (
@@ -236,7 +206,7 @@ def _bounce(
     falls = fall - view.drag * values[0] ** 2, fall + view.drag * values[1] ** 2
     late = [abs(f) * e for f, e in zip(falls, touch.errors, strict=True)]
     bridged = []
-    for gap, piece, speed in zip(meeting.gaps, (before, after), values, strict=True):
+    for gap, piece, speed in zip(meeting.gaps, meeting.flights, values, strict=True):
         lasts = piece.duration(body.time)
         bridged.append(math.hypot(
             fall * RULES.uneven_fall * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
@@ -292,11 +262,8 @@ def _whole(
     for b in bounces:
         approach = Measured(b.approach.value + drift.value, math.hypot(b.approach.std, drift.std))
         rebound = b.rebound.minus(drift)
-        e = (
-            rebound.value
-            / approach.value
-            * (b.restitution.value * b.approach.value / b.rebound.value)
-        )
+        read = b.restitution.value * b.approach.value / b.rebound.value
+        e = rebound.value / approach.value * read
         std = math.hypot(b.restitution.std, drift.std * (1.0 + e) / approach.value)
         moved.append(Bounce(
             b.time, approach, rebound, Measured(e, std), b.height, int(chosen[b.turning]),

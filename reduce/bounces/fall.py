@@ -32,9 +32,8 @@ class Fall:
         if math.isinf(self.terminal):
             return 2.0 * launch / self.gravity
         rise = math.atan(launch / self.terminal)
-        return (
-            self.terminal / self.gravity * (rise + math.atanh(self.landing(launch) / self.terminal))
-        )
+        drop = math.atanh(self.landing(launch) / self.terminal)
+        return self.terminal / self.gravity * (rise + drop)
 
     def launch(self, duration: float) -> float:
         """Return the speed at which a flight of this duration began [m/s]."""
@@ -46,19 +45,12 @@ class Fall:
             high *= 1.5
         return float(brentq(lambda v: self.duration(v) - duration, 0.5 * vacuum, high, rtol=1e-13))
 
-    def impact(self, height: float) -> float:
-        """Return the speed after a fall from rest [m/s]."""
+    def speed(self, height: float, way: float = -1.0) -> float:
+        """Return the speed after a fall from rest, or `way` 1 to rise as high [m/s]."""
         if math.isinf(self.terminal):
             return math.sqrt(2.0 * self.gravity * height)
-        exponent = -2.0 * self.gravity * height / self.terminal**2
-        return self.terminal * math.sqrt(-math.expm1(exponent))
-
-    def rise(self, height: float) -> float:
-        """Return the speed at which a ball must start to rise this high [m/s]."""
-        if math.isinf(self.terminal):
-            return math.sqrt(2.0 * self.gravity * height)
-        exponent = 2.0 * self.gravity * height / self.terminal**2
-        return self.terminal * math.sqrt(math.expm1(exponent))
+        exponent = way * 2.0 * self.gravity * height / self.terminal**2
+        return self.terminal * math.sqrt(way * math.expm1(exponent))
 
 
 @dataclass(frozen=True)

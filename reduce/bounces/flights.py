@@ -19,7 +19,7 @@ from .track import Track
 from .view import Launch, Stage, View
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """Samples of one flight, (n,) in order of time, and its motion.
 
@@ -223,17 +223,12 @@ def _next_blocks(
     for skipped in range(RULES.stray_blocks + 1):
         start = far + skipped * width
         block = order[start : start + width]
-        if block.size < min(3, width) and block.size < order.size - far:
-            break
-        if block.size == 0:
+        if block.size == 0 or block.size < min(3, order.size - far):
             break
         z = fit.deviations(track, block)
         # a block off the flight has a middle that its own noise does not explain
-        limit = RULES.flight_far
-        if (
-            abs(float(np.median(z))) < limit
-            and np.mean(np.abs(z) < RULES.no_chance) >= RULES.mostly
-        ):
+        middle, on_it = abs(float(np.median(z))), np.mean(np.abs(z) < RULES.no_chance)
+        if middle < RULES.flight_far and on_it >= RULES.mostly:
             return block, start + block.size
     return order[:0], far
 

@@ -22,13 +22,6 @@ from .track import Track
 from .view import Launch, Stage, View
 
 SHARED = len(View._fields)
-_WIDTHS = dict(RULES.scale_widths)
-"""Widths, and how much each is believed beforehand.
-
-A camera that nobody calibrated drifts by a per cent or so; a path that cannot tell, as the straight
-one of a fast rod, pays for that in its speeds. A tenth is rare and must show in the track, else it
-alone would make the error of one that does not tell.
-"""
 
 
 @dataclass(frozen=True)
@@ -79,7 +72,9 @@ def fit_together(
         x, _, _, _ = _settled(track, pieces, stage, x, before, RULES.scale_widths[1][0])
         pieces = _cleaned(track, pieces, stage, x)
     found = []
-    for width, usual in _WIDTHS.items():
+    # a path that cannot tell, as the straight one of a fast rod, pays for a usual drift in its
+    # speeds; a rare one must show, else it alone would make the error of one that does not tell
+    for width, usual in RULES.scale_widths:
         there, covariance, misfit, spread = _settled(track, pieces, stage, x, before, width)
         found.append((there, covariance, math.log(usual) - 0.5 * misfit - 0.5 * spread))
     best = max(f[2] for f in found)

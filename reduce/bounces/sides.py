@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache, partial
 
 import numpy as np
 
@@ -120,15 +121,15 @@ def true_contacts(
 
     A run of strays turns as a contact does; the one that leaves flights on both sides is kept.
     """
-    every, falls = sides, _Falls(body)
-    sides = _same_fall(falls, every, before, stage)
+    every, fall_of = sides, cache(partial(own_fall, body))
+    sides = _same_fall(body, fall_of, every, before, stage)
     k = 0
     while k + 1 < len(contacts):
         if sides[2 * k + 1] is None and sides[2 * k + 2] is None:
             tried = []
             for other in (k, k + 1):
                 left, kept = _without(body, contacts, every, other, stage)
-                found = _same_fall(falls, kept, before, stage)
+                found = _same_fall(body, fall_of, kept, before, stage)
                 pair = found[2 * k : 2 * k + 2]
                 size = sum(p.index.size for p in pair if p) if all(pair) else 0
                 tried.append((size, left, kept, found))
@@ -154,20 +155,9 @@ def _without(
     return left, kept
 
 
-class _Falls:
-    """The acceleration of each flight by itself, fitted once."""
-
-    def __init__(self, body: Track) -> None:
-        self.body = body
-        self._found: dict[int, tuple[Piece, Measured]] = {}
-
-    def of(self, piece: Piece) -> Measured:
-        if id(piece) not in self._found:  # the piece is kept, so that no other takes its place
-            self._found[id(piece)] = piece, own_fall(self.body, piece)
-        return self._found[id(piece)][1]
-
-
-def _same_fall(falls: _Falls, sides: Sides, before: Before, stage: Stage) -> Sides:
+def _same_fall(
+    body: Track, fall_of: Callable[[Piece], Measured], sides: Sides, before: Before, stage: Stage
+) -> Sides:
     """Leave out rest, rolling and what else is no flight: its acceleration is not that of all."""
     fall = before.fall.value
     most = max(RULES.foreign * usual_spread(sides), RULES.coarse * stage.reach)
@@ -176,9 +166,9 @@ def _same_fall(falls: _Falls, sides: Sides, before: Before, stage: Stage) -> Sid
         if piece is None or piece.sigma > most:
             kept.append(None)
             continue
-        own = falls.of(piece)
+        own = fall_of(piece)
         allowed = max(4.0 * own.std, RULES.fall_off * abs(fall))
-        straight = piece.straight(falls.body.time, fall)
+        straight = piece.straight(body.time, fall)
         speed = piece.launch.speed
         off = own.value - fall - before.drag.value * speed * abs(speed)
         kept.append(piece if straight or abs(off) <= allowed else None)

@@ -137,7 +137,7 @@ def _bounces(
     if options.release_height_m is not None and first == 0 and single[0]:
         height = Measured(options.release_height_m, options.release_height_m_std)
         vacuum = math.sqrt(2.0 * options.gravity_m_s2 * height.value)
-        speed = options.fall_of(vacuum).impact(height.value)
+        speed = options.fall_of(vacuum).speed(height.value)
         approach = Measured(speed, 0.5 * speed * height.std / height.value)
         after = options.fall_of(0.5 * options.gravity_m_s2 * flights[0])
         rebound = Measured(

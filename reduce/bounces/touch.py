@@ -52,7 +52,7 @@ def touch_of(
     - `likely`: how likely the samples of this contact and of the others make each of `LASTS`.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
-    runs = _both_held(track, stage, view, flights, meeting)
+    runs = _held(track, stage, view, flights, meeting)
     if (
         known is None
         and sum(r.size for r in runs) >= RULES.resolved
@@ -84,7 +84,7 @@ def samples_of(
     speed.
     """
     lowest = float(track.time[turning])
-    runs = _both_held(track, stage, view, flights, lowest)
+    runs = _held(track, stage, view, flights, lowest)
     ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     lasts = _unseen(likely)
@@ -109,29 +109,20 @@ def samples_of(
 
 
 def _held(
-    track: Track, stage: Stage, view: View, piece: Piece, meeting: float, way: int
-) -> Indices:
-    """Return the samples from the meeting outwards that the flat holds above a flight."""
-    start = int(np.searchsorted(track.time, meeting))
-    run = np.arange(start, track.time.size - 1) if way > 0 else np.arange(start - 1, 0, -1)
-    run = run[: 1 + int(RULES.longest_contact / track.step)]
-    seen = stage.seen(view, piece.launch, piece.reference, track.time[run])
-    above = track.height[run] - seen > 4.0 * piece.sigma
-    if above.all():
-        return run[:0]
-    count = int(np.argmin(above))
-    # what is held lies lower than where it is let go
-    low = bool((track.height[run[:count]] < seen[count] + 4.0 * piece.sigma).all())
-    return run[: count if low else 0]
-
-
-def _both_held(
     track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], meeting: float
 ) -> list[Indices]:
-    return [
-        _held(track, stage, view, piece, meeting, way)
-        for piece, way in zip(flights, (-1, 1), strict=True)
-    ]
+    """Return the samples from the meeting outwards that the flat holds above each flight."""
+    start, held = int(np.searchsorted(track.time, meeting)), []
+    sides = np.arange(start - 1, 0, -1), np.arange(start, track.time.size - 1)
+    for piece, side in zip(flights, sides, strict=True):
+        run = side[: 1 + int(RULES.longest_contact / track.step)]
+        seen = stage.seen(view, piece.launch, piece.reference, track.time[run])
+        above = track.height[run] - seen > 4.0 * piece.sigma
+        count = 0 if above.all() else int(np.argmin(above))
+        # what is held lies lower than where it is let go
+        low = track.height[run[:count]] < seen[count : count + 1] + 4.0 * piece.sigma
+        held.append(run[: count if low.all() else 0])
+    return held
 
 
 def likely_durations(
@@ -145,7 +136,7 @@ def likely_durations(
     """
     # strays may make flights of which one goes on through the flat
     meeting, ratio, step = float(met[0]), max(float(met[3]), 0.1), track.step
-    runs = _both_held(track, stage, view, flights, meeting)
+    runs = _held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
     resolved = frames_show(track)

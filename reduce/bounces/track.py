@@ -37,9 +37,8 @@ class Track:
 
     def drift(self, path: float) -> float:
         """Return the error of a position that grows over a flight of so long a path [unit]."""
-        return (
-            self.trend + self.unsure * max(1.0 - path / self.near, 0.0) if self.near else self.trend
-        )
+        more = self.unsure * max(1.0 - path / self.near, 0.0) if self.near else 0.0
+        return self.trend + more
 
     @cached_property
     def step(self) -> float:

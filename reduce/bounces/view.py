@@ -54,7 +54,10 @@ class Stage:
 
     def seen(self, view: View, launch: Launch, reference: float, time: Array) -> Array:
         """Return the height that the camera sees, (n,) [unit]."""
-        return self._bent(view, self.flight(view, launch, time - reference)[0], time)
+        y = self.flight(view, launch, time - reference)[0]
+        z, late = y / self.reach, (time - self.start) / self.span
+        bent = y * (1.0 + view.bend * z + view.bow * z**2) * (1.0 + view.growth * late)
+        return np.asarray(self.floor + bent)
 
     def slopes(self, view: View, launch: Launch, reference: float, time: Array) -> Array:
         """Return the derivatives of the seen heights by the shared unknowns and the launch, (n, 7).
@@ -89,9 +92,3 @@ class Stage:
         z = y / self.reach
         grown = 1.0 + view.growth * (time - self.start) / self.span
         return z, grown, (1.0 + 2.0 * view.bend * z + 3.0 * view.bow * z**2) * grown
-
-    def _bent(self, view: View, y: Array, time: Array) -> Array:
-        z = y / self.reach
-        late = (time - self.start) / self.span
-        bent = y * (1.0 + view.bend * z + view.bow * z**2) * (1.0 + view.growth * late)
-        return np.asarray(self.floor + bent)

@@ -56,26 +56,21 @@ class RodShape:
 
 @dataclass(frozen=True)
 class RodPose:
-    """Tip of the rod on its axis (column, row), lean to the right [rad], and what was fitted.
-
-    `covariance` is that of (x, y, lean, half width, curvature), the last two 0 if they were given.
-    """
+    """Tip of the rod on its axis (column, row), lean to the right [rad], and its shape."""
 
     x: float
     y: float
     lean: float
-    covariance: Array
     shape: RodShape
 
 
 @dataclass(frozen=True)
 class BallEdge:
-    """Centre of a ball (column, row), its radius [pixel], standard deviation of the row, grey."""
+    """Centre of a ball (column, row), its radius [pixel], and its grey value."""
 
     x: float
     y: float
     radius: float
-    row_std: float
     bright: float
 
 
@@ -111,20 +106,14 @@ def fit_rod(
     )
     low = np.array([*[-inf] * 5, 0.25, -inf, 1.0, 1e-5 / half, 0.0, -inf])
     high = np.array([*[inf] * 7, 2.0 * half, 1.0 / half, 1.0, inf])
-    settled = _settle(
+    p = _settle(
         lambda p: _mirrored_rod(rows, columns, p), frame[window], start,
         free=_FREE[free], limits=limits, low=low, high=high,
     )  # fmt: skip
-    if settled is None:
+    if p is None or not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.5 * p[7] > 1.0):
         return None
-    p, covariance = settled
-    if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.5 * p[7] > 1.0):
-        return None
-    chosen = [0, 1, 2, 7, 8]
-    return RodPose(
-        float(p[0]), float(p[1]), float(p[2]), covariance[np.ix_(chosen, chosen)],
-        RodShape(*(float(p[k]) for k in (7, 8, 5, 9, 10))),
-    )  # fmt: skip
+    found = RodShape(*(float(p[k]) for k in (7, 8, 5, 9, 10)))
+    return RodPose(float(p[0]), float(p[1]), float(p[2]), found)
 
 
 def fit_ball(
@@ -147,18 +136,13 @@ def fit_ball(
     p0 = np.array([x, y, radius, levels[0], contrast, 1.0, 0.0, 0.0])
     limits = np.array([2.0, 2.0, 1.0, np.inf, np.inf, 0.5, np.inf, np.inf])
     low = np.array([-np.inf, -np.inf, 1.5, -np.inf, -np.inf, 0.25, -np.inf, -np.inf])
-    settled = _settle(
+    p = _settle(
         lambda p: _ball_picture(rows, columns, p), frame[window], p0,
         free=tuple(range(8)), limits=limits, low=low, high=np.full(8, np.inf),
     )  # fmt: skip
-    if settled is None:
+    if p is None or not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.3 * p[2]):
         return None
-    p, covariance = settled
-    if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.3 * p[2]):
-        return None
-    return BallEdge(
-        float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])), levels[1]
-    )
+    return BallEdge(float(p[0]), float(p[1]), float(p[2]), levels[1])
 
 
 def _settle(
@@ -170,10 +154,9 @@ def _settle(
     limits: Array,
     low: Array,
     high: Array,
-) -> tuple[Array, Array] | None:
-    """Weighted Gauss-Newton with Huber weights; parameters and covariance (p, p), or None."""
+) -> Array | None:
+    """Weighted Gauss-Newton with Huber weights; the parameters (p,), or None."""
     p, moved = start.copy(), list(free)
-    covariance = np.zeros((p.size, p.size))
     move = np.full(len(moved), np.inf)
     for _ in range(_EDGE_ROUNDS):
         model, jacobian, zone = picture(p)
@@ -186,21 +169,16 @@ def _settle(
         active = jacobian[moved][:, zone]
         normal = (active * weight) @ active.T
         try:
-            inverse = np.linalg.inv(normal)
+            move = np.linalg.inv(normal) @ (active @ (weight * residual))
         except np.linalg.LinAlgError:
             return None
-        move = inverse @ (active @ (weight * residual))
         if not np.all(np.isfinite(move)):
             return None
         p[moved] += np.clip(move, -limits[moved], limits[moved])
         p = np.clip(p, low, high)
         if np.abs(move[:2]).max() < RULES.edge_settled:
             break
-    if np.abs(move[:2]).max() > RULES.edge_last:
-        return None
-    variance = float(np.sum(weight * residual**2) / max(weight.sum() - len(moved), 1.0))
-    covariance[np.ix_(moved, moved)] = variance * inverse
-    return p, covariance
+    return None if np.abs(move[:2]).max() > RULES.edge_last else p
 
 
 def _mirrored_rod(rows: Array, columns: Array, p: Array) -> tuple[Array, Array, Mask]:

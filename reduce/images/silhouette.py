@@ -73,5 +73,5 @@ def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> BallEdge | No
     rows, columns = np.nonzero(around)
     return BallEdge(
         float(light @ columns) / total, float(light @ rows) / total, float(np.sqrt(total / np.pi)),
-        float("nan"), bright,
+        bright,
     )  # fmt: skip

@@ -6,6 +6,7 @@ shows it: given with its uncertainty, or found from the recording itself.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,9 @@ from ..rules import RULES
 from ..shared.regression import FIT_ROUNDS, robust_regression, robust_std
 from .motion import OWN, SHARED, Motion, Prior, deviations, first_guess, jacobian
 from .rigid import Poses
+
+Spans = Sequence[tuple[int, int]]
+"""First and last index of flights among the poses, both included."""
 
 
 @dataclass(frozen=True)
@@ -40,17 +44,10 @@ class Flights:
         return np.asarray(self.covariance[np.ix_(index, index)])
 
 
-def fit_flights(
-    poses: Poses, spans: list[tuple[int, int]], gravity: Array, prior: Prior
-) -> Flights | None:
-    """Fit all flights together, with one centre of mass."""
-    if not spans:
-        return None
-    motions, offset, sigma = (
-        [first_guess(poses, s, gravity) for s in spans],
-        prior.value.copy(),
-        1e-4,
-    )
+def fit_flights(poses: Poses, spans: Spans, gravity: Array, prior: Prior) -> Flights:
+    """Fit all flights, one or more, together, with one centre of mass."""
+    motions, offset = [first_guess(poses, s, gravity) for s in spans], prior.value.copy()
+    sigma = 1e-4
     for _ in range(FIT_ROUNDS):
         weight = max(sigma, 1e-7)
         motions, offset, left, settled = _gauss_newton(poses, spans, motions, offset, prior, weight)
@@ -71,11 +68,10 @@ def fall_acceleration(poses: Poses, flights: Flights) -> Measured:
 
     A check of units, frame rate and the direction taken for up.
     """
-    spans, motions = list(flights.spans), list(flights.motions)
-    design, residual = _system(poses, spans, motions, flights.offset)
-    size = float(np.linalg.norm(motions[0].gravity))
+    design, residual = _system(poses, flights.spans, flights.motions, flights.offset)
+    size = float(np.linalg.norm(flights.motions[0].gravity))
     more = []
-    for span, motion in zip(spans, motions, strict=True):
+    for span, motion in zip(flights.spans, flights.motions, strict=True):
         index = np.arange(span[0], span[1] + 1)
         tau = (poses.time[index] - motion.reference)[:, None]
         fall = np.concatenate(
@@ -92,9 +88,7 @@ def _solved(design: Array, residual: Array) -> Array:
     return np.asarray(np.linalg.lstsq(design / scale, residual, rcond=1e-12)[0] / scale)
 
 
-def _residual(
-    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array
-) -> Array:
+def _residual(poses: Poses, spans: Spans, motions: Sequence[Motion], offset: Array) -> Array:
     """Return the deviations of all spans, component by component in time, (6 n,)."""
     each = (
         deviations(poses, np.arange(span[0], span[1] + 1), motion, offset).T.ravel()
@@ -104,9 +98,8 @@ def _residual(
 
 
 def _with_prior(
-    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array,
-    prior: Prior, weight: float,
-) -> tuple[Array, Array]:  # fmt: skip
+    poses: Poses, spans: Spans, motions: list[Motion], offset: Array, prior: Prior, weight: float
+) -> tuple[Array, Array]:
     """Return design and residual with three rows that draw b to what is known beforehand."""
     design, residual = _system(poses, spans, motions, offset)
     known = np.zeros((SHARED, design.shape[1]))
@@ -116,7 +109,7 @@ def _with_prior(
 
 
 def _system(
-    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array
+    poses: Poses, spans: Spans, motions: Sequence[Motion], offset: Array
 ) -> tuple[Array, Array]:
     """Return design (6 n, 3 + 12 f) and residual (6 n,), component by component in time."""
     width = SHARED + OWN * len(spans)
@@ -156,9 +149,8 @@ def _moved(motions: list[Motion], offset: Array, step: Array) -> tuple[list[Moti
 
 
 def _gauss_newton(
-    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array,
-    prior: Prior, weight: float,
-) -> tuple[list[Motion], Array, Array, bool]:  # fmt: skip
+    poses: Poses, spans: Spans, motions: list[Motion], offset: Array, prior: Prior, weight: float
+) -> tuple[list[Motion], Array, Array, bool]:
     """Bring motions and b nearer to the poses: both, what the step leaves, and whether it ends.
 
     Where little spin shows b, a whole step can turn a body by so much that it no longer does.

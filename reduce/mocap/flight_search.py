@@ -24,15 +24,13 @@ def find_flights(poses: Poses, gravity: Array, prior: Prior) -> Flights | None:
     spans = _merged(poses, spans, gravity, prior, sigma)
     spans = [_grown(poses, s, spans, gravity, prior, sigma) for s in spans]
     spans = [s for s in spans if s[1] - s[0] >= 4 and _falls(poses, s, gravity, prior)]
-    return fit_flights(poses, spans, gravity, prior)
+    return fit_flights(poses, spans, gravity, prior) if spans else None
 
 
 def _falls(poses: Poses, span: tuple[int, int], gravity: Array, prior: Prior) -> bool:
     """Whether a span's own acceleration is that of a fall, not of rest or of sliding."""
-    alone = fit_flights(poses, [span], gravity, prior)
-    if alone is None:
-        return False
-    own, g = fall_acceleration(poses, alone), float(np.linalg.norm(gravity))
+    own = fall_acceleration(poses, fit_flights(poses, [span], gravity, prior))
+    g = float(np.linalg.norm(gravity))
     return abs(own.value - g) < max(4.0 * own.std, RULES.fall_off * g)
 
 

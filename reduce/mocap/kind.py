@@ -17,7 +17,7 @@ from .file import Markers, read_markers
 from .options import MocapOptions
 from .picture import draw_mocap, draw_point
 from .point import PointBounce, reduce_point
-from .reduction import Hit, MocapReduction, MocapScene, reduce_mocap
+from .reduction import Hit, MocapScene, reduce_mocap
 from .rigid import rigid_poses
 
 
@@ -54,8 +54,8 @@ def reduce(path: Path, options: MocapOptions) -> Reduced:
     missing = f"{100.0 * markers.missing:.2g} % of the marker positions are missing"
     noise = {"frame_rate_hz": found.rate, "tip_height_m": found.flights.sigma}
     return Reduced(
-        source=path, values=_values(found), trials=found.trials(),
-        notes=(missing, *remarks, *found.notes), noise=noise,
+        source=path, values=_values("marker", found.flights.sigma, found.fall, found.hits),
+        trials=found.trials(), notes=(missing, *remarks, *found.notes), noise=noise,
         draw=lambda picture: draw_mocap(found, picture),
     )  # fmt: skip
 
@@ -64,22 +64,15 @@ def _point(path: Path, markers: Markers, scene: MocapScene, options: MocapOption
     axes, height = ("time [s]", "height of the marker [m]"), markers.position[:, 0] @ scene.up
     with drawn_if_refused(markers.time, height, axes=axes):
         found = reduce_point(markers, scene, spin=options.spin)
-    values = {"position_noise_m": Measured(found.noise, math.nan)}
-    values["fall_acceleration_m_s2"] = found.fall
-    values |= _each(found.bounces)
     return Reduced(
-        source=path, values=values, trials=found.trials(), notes=found.notes,
+        source=path, values=_values("position", found.noise, found.fall, found.bounces),
+        trials=found.trials(), notes=found.notes,
         draw=lambda picture: draw_point(found, picture), noise={"frame_rate_hz": markers.rate},
     )  # fmt: skip
 
 
-def _values(found: MocapReduction) -> dict[str, Measured]:
-    values = {
-        "marker_noise_m": Measured(found.flights.sigma, math.nan),
-        "fall_acceleration_m_s2": found.fall,
-    }
-    return values | _each(found.hits)
-
-
-def _each(found: Sequence[Hit | PointBounce]) -> dict[str, Measured]:
-    return labelled(zip(labels(len(found)), (one.measured for one in found), strict=True))
+def _values(
+    of: str, noise: float, fall: Measured, found: Sequence[Hit | PointBounce]
+) -> dict[str, Measured]:
+    each = labelled(zip(labels(len(found)), (one.measured for one in found), strict=True))
+    return {f"{of}_noise_m": Measured(noise, math.nan), "fall_acceleration_m_s2": fall, **each}

@@ -122,12 +122,8 @@ def first_guess(poses: Poses, span: tuple[int, int], gravity: Array) -> Motion:
     time = poses.time[index]
     middle = int(index[index.size // 2])
     reference = float(poses.time[middle])
-    steps = (
-        Rotation.from_matrix(
-            poses.turn[index[1:]] @ np.swapaxes(poses.turn[index[:-1]], 1, 2)
-        ).as_rotvec()
-        / np.diff(time)[:, None]
-    )
+    turned = poses.turn[index[1:]] @ np.swapaxes(poses.turn[index[:-1]], 1, 2)
+    steps = Rotation.from_matrix(turned).as_rotvec() / np.diff(time)[:, None]
     tau = time - reference
     line = np.polyfit(tau, poses.origin[index] - 0.5 * gravity * tau[:, None] ** 2, 1)
     return Motion(

@@ -141,10 +141,8 @@ def _stated_body(shape: Shape, options: Mapping[str, Any]) -> dict[str, Measured
     """Return what the options of a reduction tell of the striker."""
 
     def told(key: str) -> Measured | None:
-        value = options.get(key)
-        return (
-            None if value is None else Measured(float(value), float(options.get(f"{key}_std", 0.0)))
-        )
+        value, std = options.get(key), options.get(f"{key}_std", 0.0)
+        return None if value is None else Measured(float(value), float(std))
 
     size = told("diameter_m")
     half = None if size is None else size.scaled(0.5)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -67,10 +68,9 @@ def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
     padded = np.concatenate([[load.min() - deep], load, [load.min() - deep]])
     peaks = find_peaks(padded, prominence=deep)[0] - 1
     found: list[Cycle] = []
-    for k, at in enumerate(peaks):
-        last = peaks[k + 1] if k + 1 < len(peaks) else load.size
-        cycle = _cycle(load, int(at), int(last), noise, max((c.peak for c in found), default=0.0))
-        found.append(cycle)
+    for at, last in pairwise([*map(int, peaks), load.size]):
+        before = max((c.peak for c in found), default=0.0)
+        found.append(_cycle(load, at, last, noise, before))
     _check(record, found)
     return tuple(found)
 

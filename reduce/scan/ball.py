@@ -60,16 +60,14 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     near = near[:: max(1, near.size // _BALL_POINTS)]
     x, y, z = x[near], y[near], z[near]
     fit, off = _sphere(x, y, z, top, limit)
-    sector = ((np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi) * RULES.sectors).astype(
-        int
-    )
+    turn = (np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi)
+    sector = (turn * RULES.sectors).astype(int)
     parts = []
     for left_out in range(RULES.sectors):
         keep = sector % RULES.sectors != left_out
         parts.append(1.0 / _sphere(x[keep], y[keep], z[keep], top, limit)[0][3])
-    std = float(
-        np.sqrt((RULES.sectors - 1) / RULES.sectors * np.sum((parts - np.mean(parts)) ** 2))
-    )
+    scatter = np.sum((parts - np.mean(parts)) ** 2)
+    std = float(np.sqrt((RULES.sectors - 1) / RULES.sectors * scatter))
     missing = 100.0 * float(np.mean(~np.isfinite(scan.z)))
     notes = (f"{missing:.2g} % not seen",) if missing else ()
     return ScannedBall(

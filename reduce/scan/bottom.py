@@ -70,7 +70,6 @@ def find_bottom(found: Levelled, half_width: float, *, source: str) -> Bottom:
 
 def _floor(found: Levelled, start: Array, radius: float, source: str) -> _Floor:
     offsets, u = _disc(found.step, radius)
-    best: _Floor | None = None
     for _ in range(8):
         index = start + offsets
         ok = np.all((index >= 0) & (index < found.z.shape), axis=1)
@@ -83,13 +82,12 @@ def _floor(found: Levelled, start: Array, radius: float, source: str) -> _Floor:
         z = found.z[tuple(index[ok].T)]
         c, used = _clipped_fit(_design(u[ok]), z)
         at = _lowest(c, u)
-        best = _as_floor(found, c, at, start, radius, index[ok][used], u[ok][used])
+        fitted = _as_floor(found, c, at, start, radius, index[ok][used], u[ok][used])
         shift = np.rint(at * radius / found.step).astype(int)
         if not np.any(shift):
             break
         start = start + shift
-    assert best is not None
-    return best
+    return fitted
 
 
 def _as_floor(

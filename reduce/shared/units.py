@@ -16,7 +16,7 @@ POUND_FORCE = 4.4482216152605
 
 LENGTH = {
     "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12,
-    "Å": 1e-10, "in": 0.0254, "ft": 0.3048,
+    "Å": 1e-10, "in": 0.0254, "ft": 0.3048, "mil": 2.54e-5,
 }  # fmt: skip
 """With both signs for micro."""
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9, "min": 60.0}
@@ -33,7 +33,7 @@ UNITS: dict[str, dict[str, float]] = {
         "mg": 1e-3 * STANDARD_GRAVITY, "cm/s2": 1e-2, "cm/s²": 1e-2, "cm/s^2": 1e-2, "mm/s2": 1e-3,
         "mm/s²": 1e-3, "mm/s^2": 1e-3,
     },
-    "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6},
+    "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6, "ft/s": 0.3048},
     "angle": {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)},
     "spin": {"rad/s": 1.0, "deg/s": math.radians(1.0), "rpm": math.pi / 30.0, "1/s": math.tau},
     "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "psi": 6894.757293,

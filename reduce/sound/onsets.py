@@ -50,10 +50,8 @@ def _rise_db(heard: Array, rate: float) -> Array:
     """Energy just after each sample over that just before, (n,) [dB]."""
     total = np.concatenate([[0.0], np.cumsum(heard**2)])
     n = heard.size
-    after, before = (
-        max(2, round(RULES.onset_after * rate)),
-        max(4, round(RULES.onset_before * rate)),
-    )
+    after = max(2, round(RULES.onset_after * rate))
+    before = max(4, round(RULES.onset_before * rate))
     here = np.arange(n)
     ahead, behind = np.minimum(here + after, n), np.maximum(here - before, 0)
     energy = (total[ahead] - total[here]) / np.maximum(ahead - here, 1)

@@ -245,14 +245,25 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
 
 def decoded(raw: bytes, source: str) -> str:
     """Return the text of a file in any usual encoding; refuse what is none."""
-    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    wide = wide_coding(raw)
     if b"\0" in raw[:4096] and not wide:
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
     try:
-        text = raw.decode("utf-16" if wide else "utf-8-sig")
+        text = raw.decode(wide or "utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
     return text.replace(_MINUS, "-")
+
+
+def wide_coding(raw: bytes) -> str:
+    """Return the encoding of a text of two bytes a sign, by its mark or its zeros; else nothing."""
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    first, second = (raw[k:4096:2].count(0) for k in (0, 1))
+    # without a mark: what is mostly Latin has a zero in nearly each pair, always on one side
+    if min(first, second) or 4 * max(first, second) < len(raw[:4096]):
+        return ""
+    return "utf-16-be" if first else "utf-16-le"
 
 
 def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list[list[str]]:

@@ -11,7 +11,7 @@ from .options import TableOptions
 
 _READ_BY = {
     "force": "force", "acceleration": "force", "height": "height", "bounces": "instants",
-    "rebounds": "rebounds", "leeb": "leeb", "tension": "tension_table",
+    "rebounds": "rebounds", "leeb": "leeb", "tension": "tension",
 }  # fmt: skip
 """The module of what a table holds, loaded when one is read: some take longer than the file."""
 

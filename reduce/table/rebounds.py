@@ -34,11 +34,11 @@ def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     for row, (drop, *rebounds) in enumerate(heights, start=1):
         if not np.isfinite(drop):
             continue
-        speed = _fall(ball, drop).impact(float(drop))
+        speed = _fall(ball, drop).speed(float(drop))
         approach = Measured(speed, 0.5 * speed * error / drop)
         for k, height in enumerate(rebounds, start=1):
             if np.isfinite(height):
-                up = _fall(ball, height).rise(float(height))
+                up = _fall(ball, height).speed(float(height), 1.0)
                 ratio = Measured(up, 0.5 * up * error / height).over(approach)
                 seen = {"impact_speed_m_s": approach, "restitution": ratio}
                 trials.append(Trial(seen, label=f"drop{row}-{k}"))

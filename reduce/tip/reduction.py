@@ -20,8 +20,10 @@ from ..images.silhouette import body_mask
 from ..measured import Measured
 from ..rules import RULES
 from ..shared.regression import robust_regression, robust_std
-from .circle import fit_circle, radius_std
-from .edge import find_edges
+from .circle import find_edges, fit_circle, radius_std
+
+Side = tuple[float, float]
+"""One side of a rod, column = a + b row."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class TipReduction:
     residual: Array
     blur: float
     arc: float
-    sides: tuple[tuple[float, float], tuple[float, float]] | None
+    sides: tuple[Side, Side] | None
     width: Measured
     scale: Measured
     notes: tuple[str, ...]
@@ -129,12 +131,7 @@ def _ball(mask: Mask, source: str) -> tuple[float, float, float, float]:
 
 def _rod(
     grey: Array, mask: Mask, source: str
-) -> tuple[
-    tuple[tuple[float, float], tuple[float, float]],
-    Measured,
-    tuple[float, float, float, float],
-    float,
-]:
+) -> tuple[tuple[Side, Side], Measured, tuple[float, float, float, float], float]:
     """Return sides, width, a first circle, and how far from the axis the cap is read."""
     rows = np.flatnonzero(mask.any(axis=1))
     if rows[0] > 1 or rows[-1] >= mask.shape[0] - 2 or rows.size < 30:

@@ -56,9 +56,7 @@ class VideoReduction:
 
     - `frame`: (n,) numbers of the frames in which the striker was found.
     - `column`, `row`: (n,) tip of the rod on its axis, or centre of the ball [pixel].
-    - `row_std`: (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
     - `lean`: (n,) lean of the rod to the right [rad], 0 for a ball.
-    - `threshold`: grey level between body and background.
     - `half_width`: half the width of the rod, or radius of the ball [pixel].
     - `found`: contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
     """
@@ -66,10 +64,8 @@ class VideoReduction:
     frame: Integers
     column: Array
     row: Array
-    row_std: Array
     lean: Array
     shape: str
-    threshold: float
     half_width: Measured
     tip_radius: float
     optics: Optics
@@ -150,8 +146,7 @@ def reduce_video(
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     optics, notes = _timed(clip, optics)
     result = VideoReduction(
-        **track, shape=shape, threshold=0.5 * sum(levels),
-        half_width=half, tip_radius=tip_radius, optics=optics,
+        **track, shape=shape, half_width=half, tip_radius=tip_radius, optics=optics,
         found=_contacts(track, half, near, optics, clip.source), notes=(),
     )  # fmt: skip
     return replace(result, notes=(*notes, *result.found.notes, *_flight_notes(result)))
@@ -217,12 +212,10 @@ def _flight_notes(result: VideoReduction) -> list[str]:
 
 
 def _lean_notes(result: VideoReduction) -> list[str]:
-    turning = result.bounces[0].turning
+    turning, count = result.bounces[0].turning, RULES.lean_frames
     sides = {
-        "before": result.lean[max(turning - 2 * RULES.lean_frames, 0) : turning][
-            : RULES.lean_frames
-        ],
-        "after": result.lean[turning + RULES.lean_frames : turning + 2 * RULES.lean_frames],
+        "before": result.lean[max(turning - 2 * count, 0) : turning][:count],
+        "after": result.lean[turning + count : turning + 2 * count],
     }
     notes = []
     for name, lean in sides.items():

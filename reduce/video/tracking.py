@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -32,12 +32,8 @@ def track_rod(
             allowed="a rod from the upper edge to its tip (see --down, --striker-is, --crop)",
         )  # fmt: skip
     poses: list[tuple[int, RodPose]] = []
-    for number, frame in enumerate(frames):
-        grey = frame.astype(np.float64)
-        start = rod_guess(body_mask(grey, 0.5 * sum(levels)))
-        if start is None:
-            continue
-        pose = fit_rod(grey, shape, start[1], levels=levels)
+    for number, grey, (_, near) in _guessed(frames, range(len(frames)), levels):
+        pose = fit_rod(grey, shape, near, levels=levels)
         if pose is not None:
             poses.append((number, pose))
     poses = _without_reflection(frames, poses, shape, levels)
@@ -45,13 +41,26 @@ def track_rod(
         raise InputError(
             f"the tip is found in only {len(poses)} frames", source=source, allowed="10 or more"
         )
+    return _places(poses) | {"lean": np.array([p.lean for _, p in poses])}, shape
+
+
+def _places(found: Sequence[tuple[int, RodPose | BallEdge]]) -> dict[str, Any]:
     return {
-        "frame": np.array([n for n, _ in poses]),
-        "column": np.array([p.x for _, p in poses]),
-        "row": np.array([p.y for _, p in poses]),
-        "row_std": np.array([math.sqrt(max(p.covariance[1, 1], 0.0)) for _, p in poses]),
-        "lean": np.array([p.lean for _, p in poses]),
-    }, shape
+        "frame": np.array([n for n, _ in found]),
+        "column": np.array([p.x for _, p in found]),
+        "row": np.array([p.y for _, p in found]),
+    }
+
+
+def _guessed(
+    frames: npt.NDArray[np.uint8], numbers: Iterable[int], levels: tuple[float, float]
+) -> Iterator[tuple[int, Array, tuple[RodShape, tuple[float, float, float]]]]:
+    """Yield number, grey values, and shape and pose to the pixel, of frames that show a rod."""
+    for number in numbers:
+        grey = frames[number].astype(np.float64)
+        start = rod_guess(body_mask(grey, 0.5 * sum(levels)))
+        if start is not None:
+            yield number, grey, start
 
 
 def _without_reflection(
@@ -98,12 +107,8 @@ def _rod_shape(
     first, last = max(critical - reach, 0), min(critical + reach, len(frames) - 1)
     chosen = np.unique(np.linspace(first, last, 2 * RULES.shape_frames).astype(int))
     found = []
-    for number in chosen:
-        grey = frames[number].astype(np.float64)
-        start = rod_guess(body_mask(grey, 0.5 * sum(levels)))
-        if start is None:
-            continue
-        pose = fit_rod(grey, start[0], start[1], levels=levels, free="shape")
+    for _, grey, start in _guessed(frames, chosen, levels):
+        pose = fit_rod(grey, *start, levels=levels, free="shape")
         if pose is not None:
             found.append((pose.shape.half_width, pose.shape.curvature, pose.shape.blur))
     if len(found) < 3:
@@ -130,14 +135,8 @@ def track_ball(
     sharp = [(n, b) for n, b in edges if b is not None]
     # one kind of position for the whole clip: the two differ by a constant under uneven light
     found = sharp if len(sharp) > RULES.mostly_found * len(light) else light
-    return {
-        "frame": np.array([n for n, _ in found]),
-        "column": np.array([b.x for _, b in found]),
-        "row": np.array([b.y for _, b in found]),
-        "row_std": np.array([b.row_std for _, b in found]),
-        "lean": np.zeros(len(found)),
-        "radius": np.array([b.radius for _, b in found]),
-    }
+    radii = np.array([b.radius for _, b in found])
+    return _places(found) | {"lean": np.zeros(len(found)), "radius": radii}
 
 
 def _ball_edge(grey: Array, ball: BallEdge, dark: float) -> BallEdge | None:

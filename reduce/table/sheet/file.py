@@ -12,7 +12,7 @@ from ....core.inputs.csv_table import rows_with, selection
 from ....core.inputs.input_file import checked_file
 from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
-from ..file import WIDE, cells_of, decoded, is_book, refuse_torn
+from ..file import WIDE, cells_of, decoded, is_book, refuse_torn, wide_coding
 from ..heading import is_unit
 from ..packed import TABLE_BYTES
 from ..workbook import NumberCell, rows_of_sheets
@@ -64,7 +64,7 @@ def read_sheet(
         _place(head, said, source, "column")
     kept, told = columns_of(rows, head, source)
     _fill_balls(rows[head.end :], kept)
-    _join_units(rows[head.end :], kept)
+    told = _join_units(rows[head.end :], kept, told)
     if select:
         name, value = selection(select, source=source)
         place = _place(head, name, source, "select")
@@ -91,14 +91,23 @@ def _fill_balls(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> No
                 row[place] = last
 
 
-def _join_units(rows: Sequence[list[str]], columns: Sequence[SheetColumn]) -> None:
-    """Write a unit that stands in the next column, 50;cm, behind its number."""
-    taken = {column.place for column in columns}
-    for place in (c.place for c in columns if c.unit is None and c.place + 1 not in taken):
+def _join_units(
+    rows: Sequence[list[str]], columns: Sequence[SheetColumn], told: Sequence[tuple[str, str]]
+) -> list[tuple[str, str]]:
+    """Write a unit that stands in the next column, 50;cm, behind its number; tell what it became.
+
+    `told` is what became of the columns that are not understood.
+    """
+    taken, joined = {column.place for column in columns}, dict[str, str]()
+    for column in (c for c in columns if c.unit is None and c.place + 1 not in taken):
+        place = column.place
+        if all(is_unit(row[place + 1]) for row in rows if any(row[place + 1 : place + 2])):
+            joined[f"column {place + 2}"] = f"units of {column.header!r}"
         for row in rows:
             number, *unit = row[place : place + 2]
             if number and any(map(is_unit, unit)):
                 row[place] = type(number)(f"{number} {unit[0]}")
+    return [(header, joined.get(header, became)) for header, became in told]
 
 
 def read_balls(path: Path, columns: Sequence[str] = (), *, sheet: str = "") -> dict[str, Sheet]:
@@ -163,7 +172,7 @@ def _of_text(
     """
     texts = [decoded(raw, source)]
     utf8 = raw.decode(errors="ignore").encode() == raw
-    if not utf8 and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if not utf8 and not wide_coding(raw):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
     every = [
         [

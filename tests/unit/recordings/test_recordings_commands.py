@@ -321,6 +321,13 @@ def test_no_folder_is_made_around_a_set_that_is_not_there(tmp_path):
     assert not (tmp_path / "a").exists()
 
 
+@pytest.mark.parametrize("words", [["nowhere.csv"], ["--from", "nowhere.csv"]])
+def test_a_table_that_is_missing_is_told_before_what_the_set_lacks(tmp_path, words, errs, prints):
+    prints("recordings", "new", tmp_path / "set")
+    told = errs("recordings", "add", tmp_path / "set", *words)
+    assert told.startswith("nowhere.csv: no such file")
+
+
 def test_two_at_once_lose_nothing(folder):
     striker = read(folder).trials.striker[0]
     n = len(read(folder).trials)

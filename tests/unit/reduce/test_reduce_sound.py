@@ -48,7 +48,7 @@ def test_flight_with_drag_is_the_integrated_one(launch, terminal):
     assert fall.landing(launch) == pytest.approx(-flown.y_events[0][-1][1], rel=1e-8)
     assert fall.launch(fall.duration(launch)) == pytest.approx(launch, rel=1e-10)
     top = flown.y[0].max()
-    assert fall.rise(top) == pytest.approx(launch, rel=0.02)
+    assert fall.speed(top, 1.0) == pytest.approx(launch, rel=0.02)
 
 
 def test_fall_from_rest_is_the_integrated_one():
@@ -57,7 +57,7 @@ def test_fall_from_rest_is_the_integrated_one():
     flown = solve_ivp(
         lambda _x, u: [2.0 * 9.81 * (1.0 - u[0] / w**2)], (0.0, height), [0.0], rtol=1e-10
     )
-    assert Fall(9.81, w).impact(height) == pytest.approx(math.sqrt(flown.y[0, -1]), rel=1e-8)
+    assert Fall(9.81, w).speed(height) == pytest.approx(math.sqrt(flown.y[0, -1]), rel=1e-8)
 
 
 @settings(max_examples=40, deadline=None)

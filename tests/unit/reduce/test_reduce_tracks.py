@@ -173,7 +173,7 @@ def test_gravity_and_a_stated_size_that_disagree_are_both_held():
 def test_a_body_that_a_liquid_brakes_keeps_its_contacts(terminal, restitution, contacts):
     """Dropped by 0.25 m; its buoyancy, which leaves 8.05 m/s², is told or not."""
     fall, time, parts = Fall(8.05, terminal), np.arange(0.0, 4.0, 0.002), []
-    start, launch = 0.0, fall.rise(0.25)
+    start, launch = 0.0, fall.speed(0.25, 1.0)
     for k in range(contacts + 1):
         end = start + fall.duration(launch)
         here = time[(time >= start) & (time < end)]

@@ -72,7 +72,7 @@ def test_an_edge_is_moved_ten_times_until_it_settles_to_a_ten_thousandth() -> No
 def test_a_residual_of_two_and_a_half_deviations_counts_linearly() -> None:
     """Twenty greys of 0 with a spread of 0.3 at the least, and one of 10 that counts as 0.75."""
     found, _ = settled(0.0, strays=10.0, halves=False)
-    assert found[0][0] == pytest.approx(2.5 * 0.3 / 20.0, rel=1e-3)
+    assert found[0] == pytest.approx(2.5 * 0.3 / 20.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(("across", "counts"), [(14.9, True), (15.1, False)])
@@ -151,7 +151,7 @@ def test_the_shape_of_a_rod_is_read_from_thirty_frames(frames, reach, monkeypatc
 @pytest.mark.parametrize(("sharp", "kind"), [(16, "light"), (17, "sharp")])
 def test_a_ball_is_followed_by_its_edge_where_four_fifths_show_one(sharp, kind, monkeypatch):
     def found(x):
-        return SimpleNamespace(x=x, y=0.0, row_std=0.0, radius=5.0, bright=1.0)
+        return SimpleNamespace(x=x, y=0.0, radius=5.0, bright=1.0)
 
     edges = iter([found(1.0)] * sharp + [None] * (20 - sharp))
     monkeypatch.setattr(tracking, "ball_by_light", lambda *_, **__: found(0.0))

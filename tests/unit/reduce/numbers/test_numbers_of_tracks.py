@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,15 @@ import pytest
 from dentscope.reduce.bounces import contacts, flights, touch
 from dentscope.reduce.bounces.chain import _longest, _without_false_ends, _without_strays, chain_of
 from dentscope.reduce.bounces.contacts import _on_one_flat, find_bounces
-from dentscope.reduce.bounces.flights import Piece, _clean_starts, _Fit, _fitted, _next_blocks, side
+from dentscope.reduce.bounces.flights import (
+    Piece,
+    _clean_starts,
+    _Fit,
+    _fitted,
+    _next_blocks,
+    own_fall,
+    side,
+)
 from dentscope.reduce.bounces.joint import Before, _cleaned, _untrimmed, fit_together
 from dentscope.reduce.bounces.options import BallOptions, BounceOptions
 from dentscope.reduce.bounces.scale import (
@@ -20,7 +29,7 @@ from dentscope.reduce.bounces.scale import (
     frames_lost,
     scale_of,
 )
-from dentscope.reduce.bounces.sides import _Falls, _same_fall, known_before
+from dentscope.reduce.bounces.sides import _same_fall, known_before
 from dentscope.reduce.bounces.times import BouncedTimes, _unsure_contact, reduce_bounce_times
 from dentscope.reduce.bounces.touch import (
     LASTS,
@@ -177,7 +186,8 @@ def test_a_flight_spreads_six_times_as_much_as_others_or_a_hundredth_of_the_reac
     track, piece = thrown()
     sides = [Piece(piece.index, 0.2, piece.launch, s) for s in (usual, usual, usual, sigma)]
     before = Before(Measured(9810.0, 0.0), Measured(0.0, 0.0))
-    assert (_same_fall(_Falls(track), sides, before, STAGE)[3] is not None) == kept
+    fall_of = partial(own_fall, track)
+    assert (_same_fall(track, fall_of, sides, before, STAGE)[3] is not None) == kept
 
 
 @pytest.mark.parametrize(("fall", "straight"), [(0.99, True), (1.01, False)])
@@ -270,7 +280,7 @@ def test_four_samples_less_than_a_millisecond_apart_show_both_ends(
     runs, step, resolved, monkeypatch
 ) -> None:
     held = [9 - np.arange(runs[0]), 10 + np.arange(runs[1])]
-    monkeypatch.setattr(touch, "_both_held", lambda *_: held)
+    monkeypatch.setattr(touch, "_held", lambda *_: held)
     track = Track(step * np.arange(20.0), np.zeros(20))
     both = piece([0, 1]), piece([18, 19])
     met = np.array([9.5 * step, 1.0, 1.0, 1.0, 0.0])
@@ -280,7 +290,7 @@ def test_four_samples_less_than_a_millisecond_apart_show_both_ends(
 
 def test_half_of_what_shows_of_a_contact_lies_beyond_its_ends(monkeypatch) -> None:
     """Two samples before and two after the lowest; of four that show, one and one more."""
-    monkeypatch.setattr(touch, "_both_held", lambda *_: [np.array([9, 8]), np.array([11, 12])])
+    monkeypatch.setattr(touch, "_held", lambda *_: [np.array([9, 8]), np.array([11, 12])])
     track = Track(1e-3 * np.arange(20.0), np.zeros(20))
     both = piece([0, 1]), piece([18, 19])
     short = np.eye(1, LASTS.size)[0]  # 30 us
@@ -302,7 +312,7 @@ def test_contacts_of_a_track_last_within_three_tenths_of_each_other() -> None:
 
 
 def likely(monkeypatch, track, both, ratio=1.0) -> np.ndarray:
-    monkeypatch.setattr(touch, "_both_held", lambda *_: [np.array([], int)] * 2)
+    monkeypatch.setattr(touch, "_held", lambda *_: [np.array([], int)] * 2)
     met = np.array([0.0, 1.0, 1.0, ratio, 0.0])
     return likely_durations(track, STAGE, NO_FALL, both, met)
 

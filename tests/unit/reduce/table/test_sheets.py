@@ -69,7 +69,8 @@ def test_a_german_sheet(tmp_path):
 @pytest.mark.parametrize(
     "text",
     ["drop height (mm),Rebound [mm]\n500,180\n", "Fallhöhe (cm),Rückprall (cm)\n50,18\n",
-     "v_in (m/s),v_out (m/s)\n2,1.2\n", "v_in (m/s),rebound (m/s)\n2,1.2\n"],
+     "v_in (m/s),v_out (m/s)\n2,1.2\n", "v_in (m/s),rebound (m/s)\n2,1.2\n",
+     "v_in (ft/s),v_out [ft/s]\n2,1.2\n", "drop (ft),rebound (mil)\n1,4320\n"],
 )  # fmt: skip
 def test_a_rebound_is_a_height_or_a_speed_by_its_unit(tmp_path, text):
     assert restitutions(read_text(tmp_path, text)) == pytest.approx([0.6])
@@ -313,13 +314,17 @@ LAID_OUT = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("coding", ["utf-8", "utf-16", "mac_roman"])
+@pytest.mark.parametrize("coding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "mac_roman"])
 @pytest.mark.parametrize("text", LAID_OUT)
 def test_two_drops_are_read_however_they_are_laid_out(tmp_path, text, coding):
     (tmp_path / "a.txt").write_bytes(text.encode(coding))
     sheet = read_sheet(tmp_path / "a.txt")
     assert heights(sheet) == [0.5, 0.6]
     assert restitutions(sheet) == pytest.approx([0.6, 0.6], rel=1e-4)
+
+
+def test_a_column_of_units_is_told_as_that(tmp_path):
+    assert columns(read_text(tmp_path, LAID_OUT[3]))["column 3"] == "units of 'Fallhöhe'"
 
 
 def test_two_diameters_of_one_round_are_a_dents(tmp_path):
