@@ -386,10 +386,9 @@ class StrikerTable(BodyTable):
     def weighed(self) -> bool:
         """Whether the mass is stated; else it follows from radius and density of a sphere."""
         density = value_of(self.density_kg_m3)
-        return (
-            self.shape != "sphere"
-            or self.mass_kg.value != solid_mass(self.tip_radius_m.value, density)
-        )  # fmt: skip
+        return self.shape != "sphere" or self.mass_kg.value != solid_mass(
+            self.tip_radius_m.value, density
+        )
 
     @property
     def body_radius(self) -> float:

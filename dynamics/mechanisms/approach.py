@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..rules import RULES
 from ..scene import Scene
@@ -30,9 +29,9 @@ class ImpactSpeedLoss(Mechanism):
             "0 for a guide, 1 for air drag, -1/2 for a release that takes a fixed speed", nodes=4,
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"permanent_depth_m": -1, "peak_force_N": -1}
-    form: ClassVar[float] = 0.05
-    in_flight: ClassVar[bool] = True
+    direction = {"permanent_depth_m": -1, "peak_force_N": -1}
+    form = 0.05
+    in_flight = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs speeds computed from heights."""
@@ -68,9 +67,9 @@ class Tilt(Mechanism):
             literature=Literature(5.0, "the tolerance that the thesis states"),
         ),
     )  # fmt: skip
-    form: ClassVar[float] = 0.05
-    in_flight: ClassVar[bool] = True
-    aslant: ClassVar[bool] = True
+    form = 0.05
+    in_flight = True
+    aslant = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""
