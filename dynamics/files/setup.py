@@ -33,6 +33,7 @@ from ...models.choose import follows_flow
 from ..batch import Change, impacts, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
+from ..mechanisms.approach import Tilt
 from ..mechanisms.asked import Asked
 from ..result import Impact
 from ..rules import RULES
@@ -250,6 +251,8 @@ class Setup:
             )  # fmt: skip
 
     def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
+        for rig in (self, *self.rigs):
+            rig._check_tilt(laws[0])
         never = self._never(laws) if self.asked else {}
         for rig in self.rigs if never else ():  # a number of the sweep may let it act
             never = {name: why for name, why in never.items() if name in rig._never(laws)}
@@ -259,6 +262,18 @@ class Setup:
                            allowed="left out")
                 for name in sorted(never)
             ))  # fmt: skip
+
+    def _check_tilt(self, law: ContactLaw) -> None:
+        """Refuse what would be cut in silence."""
+        if (tilt := self.asked.constants.get("tilt")) is None:
+            return
+        scenes = swept_scenes(self.sweep, self.plain(law), stated=self.stated)
+        if any(Tilt.cut(scene, tilt) for scene in scenes):
+            raise InputError(
+                f"{tilt['tilt_deg']:g} turns the striker onto the flat", source=self.source,
+                key="mechanisms.tilt.tilt_deg",
+                allowed="what leaves a rod 0.02 rad and a ball 0.001 m/s towards it",
+            )  # fmt: skip
 
     def _never(self, laws: Sequence[ContactLaw]) -> dict[str, str]:
         """Return why, for the mechanisms that act by none of the laws, in no blow of this rig.
