@@ -257,11 +257,8 @@ class Setup:
         for rig in self.rigs if never else ():  # a number of the sweep may let it act
             never = {name: why for name, why in never.items() if name in rig._never(laws)}
         if never:
-            raise InputErrors(tuple(
-                InputError(never[name], source=self.source, key=f"mechanisms.{name}",
-                           allowed="left out")
-                for name in sorted(never)
-            ))  # fmt: skip
+            told = ((f"mechanisms.{name}", never[name], "left out") for name in sorted(never))
+            raise InputErrors(in_file(told, self.source))
 
     def _check_tilt(self, law: ContactLaw) -> None:
         """Refuse what would be cut in silence."""
