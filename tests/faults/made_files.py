@@ -14,3 +14,18 @@ def rows_of(path):
     """Rows of a table by the names of its columns."""
     with path.open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
+
+
+def changed(content, changes):
+    """A copy of tables with keys set, or left out where None; a dot leads into a table."""
+    content = dict(content)
+    for key, value in changes.items():
+        first, _, rest = key.partition(".")
+        value = {rest: value} if rest else value
+        if isinstance(value, dict) and isinstance(content.get(first, {}), dict):
+            content[first] = changed(content.get(first, {}), value)
+        elif value is None:
+            content.pop(first, None)
+        else:
+            content[first] = value
+    return content

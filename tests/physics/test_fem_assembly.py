@@ -33,17 +33,12 @@ def elements_of(mesh, radius):
     n = mesh.t.shape[1]
     r = np.asarray(basis.global_coordinates())[0]
     dV = 2.0 * math.pi * r * basis.dx
+    gradients = [np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)]
+    values = [np.broadcast_to(np.asarray(basis.basis[a][0]), (n, 4))[0] for a in range(4)]
     return Elements(
         conn=np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),
-        grad=np.ascontiguousarray(
-            np.stack([np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)], axis=2)
-        ),
-        value=np.ascontiguousarray(
-            np.stack(
-                [np.broadcast_to(np.asarray(basis.basis[a][0]), (n, 4))[0] for a in range(4)],
-                axis=1,
-            )
-        ),
+        grad=np.ascontiguousarray(np.stack(gradients, axis=2)),
+        value=np.ascontiguousarray(np.stack(values, axis=1)),
         r=r, dV=dV, volume=dV.sum(axis=1),
         G=np.full(n, G), K=np.full(n, K), radius=np.full(n, radius),
         stiffness=np.empty((0, 8, 8)), linear=np.full(n, -1),
@@ -68,10 +63,8 @@ def assembled(mesh, elements, u, state, rule):
 
 def smooth_field(mesh, size):
     r, z = mesh.p
-    return (
-        size
-        * np.column_stack([r * (0.5 - z + 0.3 * r * z), z * (0.8 * r - 0.6) + 0.2 * r**2]).ravel()
-    )
+    field = [r * (0.5 - z + 0.3 * r * z), z * (0.8 * r - 0.6) + 0.2 * r**2]
+    return size * np.column_stack(field).ravel()
 
 
 @pytest.mark.parametrize("radius", [np.inf, RADIUS])
@@ -141,9 +134,8 @@ def plain_scikit_fem(mesh, u, state, radius, rule):
 @pytest.mark.parametrize(("size", "radius"), [(0.002, np.inf), (0.05, RADIUS)])
 def test_residual_equals_a_plain_scikit_fem_form(distorted, size, radius):
     elements = elements_of(distorted, radius)
-    state, _ = advance(
-        elements, smooth_field(distorted, 0.3 * size), state=State.virgin(12), rule=EXACT
-    )
+    begun = smooth_field(distorted, 0.3 * size)
+    state, _ = advance(elements, begun, state=State.virgin(12), rule=EXACT)
     u = smooth_field(distorted, size)
     force, _, plastic = assembled(distorted, elements, u, state, EXACT)
     # scikit-fem numbers the components of a node one after the other, as we do
@@ -156,9 +148,8 @@ def test_residual_equals_a_plain_scikit_fem_form(distorted, size, radius):
 @pytest.mark.parametrize(("size", "radius"), [(0.01, np.inf), (0.05, RADIUS)])
 def test_tangent_is_the_derivative_of_the_residual(distorted, size, radius, rule):
     elements = elements_of(distorted, radius)
-    state, _ = advance(
-        elements, smooth_field(distorted, 0.5 * size), state=State.virgin(12), rule=rule
-    )
+    begun = smooth_field(distorted, 0.5 * size)
+    state, _ = advance(elements, begun, state=State.virgin(12), rule=rule)
     u = smooth_field(distorted, size)
     force, tangent, _ = assembled(distorted, elements, u, state, rule)
 

@@ -23,6 +23,12 @@ def hertz(pair, delta):
     return 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R) * delta**1.5, np.sqrt(pair.R * delta)
 
 
+def solved(pair, depths, accuracy=fem.Accuracy.smoke, **asked):
+    solution = fem.solve(fem.ContactProblem(pair, depths, **asked), accuracy=accuracy())
+    assert solution.outcome.completed, str(solution.outcome)
+    return solution
+
+
 @pytest.mark.parametrize(
     ("sphere", "flat"),
     [(STEEL, STEEL), (ALUMINIUM, STEEL), (STEEL, RIGID), (RIGID, STEEL)],
@@ -33,9 +39,7 @@ def test_elastic_contact_follows_hertz(sphere, flat):
     # a rigid partner doubles the finite sphere's part: the limit of 1 % is then reached earlier
     deepest = 2e-4 if flat.rigid or sphere.rigid else 4e-4
     depths = fem.geometric_depths(1e-5, deepest, 8)
-    solution = fem.solve(fem.ContactProblem(pair, depths), accuracy=fem.Accuracy.quick())
-    assert solution.outcome.completed
-    c = solution.loading
+    c = solved(pair, depths, fem.Accuracy.quick).loading
     force, radius = hertz(pair, c.delta)
     assert radius.max() / pair.R <= 0.02
     assert c.force == pytest.approx(force, rel=0.01)
@@ -50,18 +54,15 @@ def test_published_force_of_a_light_contact_is_free_of_bias():
     """At a/R = 0.001 the finite sphere adds 0.03 % to Hertz's force."""
     pair = Pair(sphere=STEEL, flat=STEEL, R=5e-3)
     depths = (1e-6, 1.7e-6, 3e-6)
-    c = fem.solve(fem.ContactProblem(pair, depths), accuracy=fem.Accuracy.production()).loading
+    c = solved(pair, depths, fem.Accuracy.production).loading
     force, radius = hertz(pair, c.delta)
     assert abs(np.mean(c.force / force) - 1.0) < 1e-3
     assert abs(np.mean(c.radius / radius) - 1.0) < 2e-3
 
 
 def plastic_pair(scale=1.0, radius=1e-3):
-    return Pair(
-        sphere=Material(E=200e9 * scale, nu=0.3, Sy=503e6 * scale),
-        flat=Material(E=200e9 * scale, nu=0.3, Sy=503e6 * scale),
-        R=radius,
-    )
+    body = Material(E=200e9 * scale, nu=0.3, Sy=503e6 * scale)
+    return Pair(body, body, radius)
 
 
 @pytest.fixture(scope="module")
@@ -139,13 +140,6 @@ def flowing_pair(scale=1.0, radius=1e-3, hurry=1.0, **parts):
     return dataclasses.replace(plain, flat=plain.flat.with_(flow=flow))
 
 
-def solved(pair, depths, **asked):
-    problem = fem.ContactProblem(pair, depths, **asked)
-    solution = fem.solve(problem, accuracy=fem.Accuracy.smoke())
-    assert solution.outcome.completed, str(solution.outcome)
-    return solution
-
-
 def test_a_metal_that_hardens_and_feels_the_rate_keeps_its_balances(equal_strengths):
     depths = fem.geometric_depths(4e-5, 0.004, 12)
     c = equal_strengths.loading
@@ -166,9 +160,8 @@ def test_a_metal_that_hardens_and_feels_the_rate_keeps_its_balances(equal_streng
 def test_rates_count_in_units_of_speed_over_radius():
     depths = fem.geometric_depths(4e-5, 1e-3, 5)
     one = solved(flowing_pair(), depths, speeds=((0.0, 8.0),)).loading
-    other = solved(
-        flowing_pair(scale=1e-3, radius=7.0, hurry=0.5), depths, speeds=((0.0, 4.0),)
-    ).loading
+    half = flowing_pair(scale=1e-3, radius=7.0, hurry=0.5)
+    other = solved(half, depths, speeds=((0.0, 4.0),)).loading
     assert other.force / (1e-3 * 7000.0**2) == pytest.approx(one.force, rel=2e-3)
 
 
@@ -210,10 +203,7 @@ def test_a_contact_in_which_nothing_slides_is_stiffer_and_smaller():
     pair = Pair(sphere=RIGID, flat=Material(E=200e9, nu=0.0), R=5e-3)
     depths = fem.geometric_depths(1e-5, 1e-4, 12)
     free, held = (
-        fem.solve(
-            fem.ContactProblem(pair, depths, friction=mu), accuracy=fem.Accuracy.quick()
-        ).loading
-        for mu in (0.0, 20.0)
+        solved(pair, depths, fem.Accuracy.quick, friction=mu).loading for mu in (0.0, 20.0)
     )
     later = slice(6, None)  # the first equilibrium slides freely
     force, radius = stuck_ratios(0.0)

@@ -1,18 +1,26 @@
-"""Impacts against closed forms: Hertz, a constant pressure, the rigid body with friction."""
+"""Impacts by steps and by work alone against closed forms: Hertz, a pressure, the rigid body."""
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pytest
-from dentscope.core import Material
-from dentscope.dynamics import Approach, Friction, Settings, Striker, scene_of, strike, traced
+from dentscope.core import Material, Pair
+from dentscope.core.inputs.toml_input import read_toml
+from dentscope.dynamics import Approach, Friction, Settings, Striker, Support, strike, traced
 from dentscope.dynamics.inverse import alpha, mobility
+from dentscope.dynamics.tabulated.energy_route import NAMES, energy_impacts, why_not
+from dentscope.models import LAWS
 from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
 from dentscope.models.kernel import E, R, S, kernel
+from dentscope.models.published.ghaednia import GHAEDNIA
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
-from made_scenes import STEEL, on_iron
+from dentscope.studies.thesis.chapter3 import REFERENCE, bench, curves, deviation
+from dentscope.studies.thesis.chapter5 import simulate_experiment
+from made_scenes import IRON, STEEL, on_iron
+from scipy.special import gamma
 
 TIGHT = Settings(tolerance=1e-11)
 
@@ -97,8 +105,8 @@ def test_constant_pressure_loses_restitution_with_the_fourth_root_of_speed() -> 
 
 def test_a_tip_that_ploughs_is_held_by_its_front_as_well() -> None:
     """Bowden and Tabor: of a sphere in sliding T = (mu + s 4/(3 pi) a/R) F; Hertz's a^2 = R d."""
-    scene = scene_of(
-        HERTZ, sphere=STEEL, flat=STEEL, striker=Striker(mass=0.03, tip_radius=0.01),
+    scene = on_iron(
+        HERTZ, flat=STEEL, striker=Striker(mass=0.03, tip_radius=0.01),
         approach=Approach(2.0, tangential=-40.0), friction=Friction(0.1, ploughing=1.5),
     )  # fmt: skip
     trace = traced(scene, points=50)
@@ -118,11 +126,7 @@ def test_sliding_rod_obeys_the_rigid_body_identities(angle: float, mu: float) ->
     A short, hard impact (1e6 times stiffer) keeps the angle, so that the impulse relations hold.
     """
     hard = STEEL.with_(E=2e17, Sy=7.6e14)
-    scene = rod(CONSTANT, angle, mu=mu)
-    stiff = scene_of(
-        CONSTANT, sphere=hard, flat=hard.with_(Sy=3e14), striker=scene.striker,
-        approach=scene.approach, friction=scene.friction, gravity=0.0,
-    )  # fmt: skip
+    stiff = rod(CONSTANT, angle, mu=mu, sphere=hard, flat=hard.with_(Sy=3e14))
     impact = strike(stiff, TIGHT)
     found = mobility(stiff.striker, stiff.approach.angle)
     P = impact.normal_impulse_Ns
@@ -190,11 +194,6 @@ def test_rod_sticks_from_the_friction_of_the_audit() -> None:
 
 def test_thesis_tables_with_the_mass_that_fits() -> None:
     """Tables 5.2 and 5.4: dents of 67 and 251 um, mean force 2571 and 11009 N (Ghaednia)."""
-    from dentscope.core.inputs.toml_input import read_toml
-    from dentscope.models.published.ghaednia import GHAEDNIA
-    from dentscope.studies.thesis.chapter3 import REFERENCE
-    from dentscope.studies.thesis.chapter5 import simulate_experiment
-
     first, _, last = read_toml(REFERENCE / "chapter45.toml")["experiment"]
     for row, dent, force, time in ((first, 67e-6, 2571, 0.25e-3), (last, 251e-6, 11009, None)):
         impact = simulate_experiment(row, GHAEDNIA, mass=0.567)
@@ -206,9 +205,6 @@ def test_thesis_tables_with_the_mass_that_fits() -> None:
 
 def test_chapter3_depths_and_restitution_agree_for_one_mass() -> None:
     """Measured 42 and 118 um, 0.56 and 0.49: met by the corrected model at 0.33-0.355 kg."""
-    from dentscope.models.published.ghaednia import GHAEDNIA
-    from dentscope.studies.thesis.chapter3 import bench, curves, deviation
-
     found = bench()
     curve = curves(found, [GHAEDNIA], masses=[found.mass_that_fits], count=2)[0]
     off = [deviation(curve, row)[1] for row in found.measured]
@@ -217,10 +213,6 @@ def test_chapter3_depths_and_restitution_agree_for_one_mass() -> None:
 
 def test_the_fitted_law_rebounds_like_lammps_mdr_where_yield_dominates() -> None:
     """A law of another origin: within 15 % at 0.2 to 2 m/s (docs/theory.md)."""
-    from dentscope.core.inputs.toml_input import read_toml
-    from dentscope.models import LAWS
-    from dentscope.studies.thesis.chapter3 import REFERENCE
-
     data = read_toml(REFERENCE / "mdr.toml")
     ball, mdr = data["ball"], data["mdr"]
     body = Material(ball["E_Pa"], ball["nu"], ball["Sy_Pa"], density=ball["density_kg_m3"])
@@ -228,8 +220,77 @@ def test_the_fitted_law_rebounds_like_lammps_mdr_where_yield_dominates() -> None
     striker = Striker(mass=4.0 / 3.0 * math.pi * tip**3 * body.density, tip_radius=tip)
     rigid = Material(E=math.nan, nu=math.nan, rigid=True)
     for speed, theirs in list(zip(mdr["speed_m_s"], mdr["restitution"], strict=True))[5:9]:
-        scene = scene_of(
+        scene = on_iron(
             LAWS["fitted"], sphere=body, flat=rigid, striker=striker, approach=Approach(speed),
             gravity=0.0,
         )  # fmt: skip
         assert strike(scene).restitution == pytest.approx(theirs, rel=0.15)
+
+
+PAIR = Pair(STEEL, IRON, 0.0088)
+
+
+def by_work(law, speeds, *, mass=0.4607, pair=PAIR, gravity=9.81):
+    n = len(speeds)
+    rows = energy_impacts(law, pair, np.full(n, mass), np.asarray(speeds, float), gravity=gravity)
+    return dict(zip(NAMES, rows.T, strict=True))
+
+
+def test_hertz_exactly() -> None:
+    speeds = np.geomspace(0.01, 3.0, 12)
+    mass = 0.02
+    found = by_work(LAWS["hertz"], speeds, mass=mass, gravity=0.0)
+    # d_m = (5 m v^2 / (4 K))^(2/5), T = 2.9433 d_m / v (Hertz 1882, Johnson 1985 11.24)
+    K = 4.0 / 3.0 * PAIR.E_reduced * math.sqrt(PAIR.R)
+    peak = (1.25 * mass * speeds**2 / K) ** 0.4
+    factor = 2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9)
+    assert found["peak_depth_m"] == pytest.approx(peak, rel=1e-7)
+    assert found["peak_force_N"] == pytest.approx(K * peak**1.5, rel=1e-7)
+    assert found["contact_time_s"] == pytest.approx(factor * peak / speeds, rel=1e-7)
+    assert found["restitution"] == pytest.approx(np.ones(12), abs=1e-8)
+
+
+def test_fully_plastic_restitution_falls_as_the_fourth_root_of_speed() -> None:
+    # Johnson 1985 (11.21): e ~ v^(-1/4) deep in yield, for a law of constant pressure
+    found = by_work(LAWS["johnson"], np.array([1.0, 2.0, 4.0, 8.0]), gravity=0.0)
+    slopes = np.diff(np.log(found["restitution"])) / math.log(2.0)
+    assert slopes == pytest.approx(np.full(3, -0.25), abs=0.005)
+
+
+@pytest.mark.parametrize("name", ["fitted", "ghaednia", "kogut-etsion", "jackson-green", "stronge"])
+def test_the_time_steps_end_alike(name: str) -> None:
+    # 0.05 m/s: gravity does 4 % of the work; 10 m/s: a tenth of the radius deep
+    speeds = np.geomspace(0.05, 10.0, 7)
+    found = by_work(LAWS[name], speeds)
+    for k, speed in enumerate(speeds):
+        scene = on_iron(LAWS[name], approach=Approach(float(speed)))
+        stepped = strike(scene, Settings(tolerance=1e-12))
+        for key in NAMES:
+            theirs = getattr(stepped, key)
+            scale = stepped.peak_depth_m if key.startswith("residual") else abs(theirs)
+            off = abs(found[key][k] - theirs) / scale
+            assert off < 2e-7, (key, speed, off)
+
+
+def test_energy_and_momentum_balance() -> None:
+    speeds = np.geomspace(0.05, 10.0, 50)
+    found = by_work(LAWS["fitted"], speeds)
+    m, g = 0.4607, 9.81
+    before = 0.5 * m * speeds**2
+    fallen = m * g * (found["residual_flat_m"] + found["residual_sphere_m"])
+    after = 0.5 * m * found["rebound_speed_m_s"] ** 2 + found["contact_work_J"]
+    assert np.abs(before + fallen - after).max() < 1e-12 * before.max()
+    impulse = found["normal_impulse_Ns"] - m * g * found["contact_time_s"]
+    assert impulse == pytest.approx(m * (speeds + found["rebound_speed_m_s"]), rel=1e-12)
+
+
+def test_what_the_route_leaves_to_the_time_steps() -> None:
+    found = by_work(LAWS["fitted"], [1e-3, 1.0, 5e3])
+    # so slow that gravity does most of the work; deeper than half the radius
+    assert np.isnan(found["restitution"]).tolist() == [True, False, True]
+
+    scene = partial(on_iron, LAWS["fitted"])
+    assert why_not(scene(friction=Friction(0.3))) == ""
+    assert why_not(scene(approach=Approach(1.0, math.radians(45)))) == "a leaning rod"
+    assert why_not(scene(approach=Approach(1.0, spin=3.0))) == "spin"
+    assert why_not(scene(support=Support(mass=2.0, stiffness=1e7))) == "a support that moves"

@@ -6,23 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.dynamics import (
-    Approach,
-    ForceTransform,
-    Friction,
-    Imprint,
-    Instrument,
-    Scene,
-    Settings,
-    Spot,
-    Striker,
-    rod_modes,
-    scene_of,
-    strike,
-    traced,
-)
+from dentscope.dynamics import Approach, Scene, Settings, Striker, rod_modes, strike, traced
 from dentscope.dynamics import surface as su
 from dentscope.dynamics.inverse import mobility
+from dentscope.dynamics.scene import ForceTransform, Friction, Instrument, scene_of
+from dentscope.dynamics.surface import Imprint, Spot
 from dentscope.models import LAWS
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
@@ -93,14 +81,14 @@ def test_a_second_touch_fades_from_the_old_peak_to_fresh_metal(law: object) -> N
     scene = ball(law)
     first = strike(scene, TIGHT)
     a = first.spot.imprints[0].radius
-    found = []
-    for s in np.linspace(0.0, 2.0 * a, 51):
-        again = strike(scene.with_(spot=first.spot.shifted(float(s))), TIGHT)
-        assert again.outcome.completed
-        found.append(
-            (again.residual_flat_m / first.residual_flat_m, again.scar_length_m / a,
-             again.restitution)
-        )  # fmt: skip
+
+    def again(s):
+        impact = strike(scene.with_(spot=first.spot.shifted(float(s))), TIGHT)
+        assert impact.outcome.completed
+        dent, scar = impact.residual_flat_m / first.residual_flat_m, impact.scar_length_m / a
+        return dent, scar, impact.restitution
+
+    found = [again(s) for s in np.linspace(0.0, 2.0 * a, 51)]
     # s = 0: together both blows end where one of the same energy ends.
     total = math.sqrt(2.0 - first.restitution**2)
     single = strike(scene.with_(approach=Approach(total)), TIGHT)
@@ -112,14 +100,9 @@ def test_a_second_touch_fades_from_the_old_peak_to_fresh_metal(law: object) -> N
     assert found[-1][0] == pytest.approx(1.0, rel=1e-3)
     assert found[-1][1] == pytest.approx(2.0 + fresh.scar_length_m / a, rel=1e-2)
     steps = np.abs(np.diff(np.array(found), axis=0)).max(axis=0)
-    assert steps[0] < 0.15
-    assert steps[1] < 0.1
-    assert steps[2] < 0.06
+    assert np.all(steps < [0.15, 0.1, 0.06])
     # twice as fine, steps half as large: it is continuous and not only small
-    fine = []
-    for s in np.linspace(0.0, 0.4 * a, 21):
-        again = strike(scene.with_(spot=first.spot.shifted(float(s))), TIGHT)
-        fine.append((again.residual_flat_m / first.residual_flat_m, again.restitution))
+    fine = [again(s)[::2] for s in np.linspace(0.0, 0.4 * a, 21)]
     finer = np.abs(np.diff(np.array(fine), axis=0)).max(axis=0)
     assert np.all(finer < 0.75 * steps[[0, 2]])
 
@@ -262,8 +245,8 @@ def test_beyond_the_edge_the_tip_is_a_flat_punch() -> None:
 )
 def test_edge_has_a_plastic_limit(tip_strength: float, pressure: float) -> None:
     """The rod's yield force, or a punch's (5.69/sqrt 3) Sy on the flat, whichever is less."""
-    scene = scene_of(
-        HERTZ, sphere=STEEL.with_(Sy=tip_strength), flat=IRON,
+    scene = on_iron(
+        HERTZ, sphere=STEEL.with_(Sy=tip_strength),
         striker=Striker(mass=MASS, tip_radius=RADIUS, length=0.3, radius=0.005),
         approach=Approach(10.0), gravity=0.0, force=ForceTransform(edge=0.002),
     )  # fmt: skip
@@ -286,9 +269,7 @@ def test_flat_on_the_tip_makes_a_linear_spring() -> None:
 def test_flattened_tip_of_one_trial_is_the_tip_of_the_next() -> None:
     """Three blows on fresh places: the flat carries v sqrt(1 + (1 - e^2) ...) as one blow does."""
     ball = Striker(mass=0.03, tip_radius=0.01)
-    scene = scene_of(
-        JACKSON_GREEN, sphere=IRON, flat=STEEL, striker=ball, approach=Approach(1.0), gravity=0.0
-    )
+    scene = on_iron(JACKSON_GREEN, sphere=IRON, flat=STEEL, striker=ball, gravity=0.0)
     spot, kept, given = Spot(), [], 0.0
     for _ in range(3):
         impact = strike(scene.with_(spot=spot))
@@ -307,15 +288,14 @@ def test_flattened_tip_of_one_trial_is_the_tip_of_the_next() -> None:
 @pytest.mark.parametrize("angle", [45.0, 70.0])
 def test_friction_at_rest_holds_what_sliding_friction_could_not(angle: float) -> None:
     """A tip that lands without sliding stays if mu_static exceeds c s/(I/m + s^2) (audit)."""
-    rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
-    critical = mobility(rod, math.radians(angle)).stick_friction
+    critical = mobility(ROD, math.radians(angle)).stick_friction
     assert 0.2 < critical < 0.62
 
     def impact(friction: Friction) -> object:
         approach = Approach(0.5, math.radians(angle))
         return strike(
-            scene_of(HERTZ, sphere=ELASTIC, flat=ELASTIC, striker=rod, friction=friction,
-                     gravity=0.0, approach=approach)
+            on_iron(HERTZ, sphere=ELASTIC, flat=ELASTIC, friction=friction, gravity=0.0,
+                    approach=approach)
         )  # fmt: skip
 
     held = impact(Friction(0.1, mu_static=1.1 * critical, speed=1e-4))

@@ -58,7 +58,9 @@ def setup_for(bodies: str, support: str, angle: float, laws: tuple[str, ...] = D
     )  # fmt: skip
 
 
-def assert_swept(bodies: str, support: str, angle: float) -> None:
+# every second combination, so that each body, support and angle is among them
+@pytest.mark.parametrize(("bodies", "support", "angle"), CASES[::2] + CASES[1::6])
+def test_a_sweep_ends(bodies: str, support: str, angle: float) -> None:
     setup = setup_for(bodies, support, angle)
     for name in setup.laws:
         found = setup.swept(LAWS[name])
@@ -68,12 +70,6 @@ def assert_swept(bodies: str, support: str, angle: float) -> None:
             assert np.isfinite(found[column][completed]).all()
         single = strike(setup.scene(LAWS[name]), setup.settings)
         assert found["restitution"][0] == pytest.approx(single.restitution, abs=2e-5)
-
-
-# every second combination, so that each body, support and angle is among them
-@pytest.mark.parametrize(("bodies", "support", "angle"), CASES[::2] + CASES[1::6])
-def test_a_sweep_ends(bodies: str, support: str, angle: float) -> None:
-    assert_swept(bodies, support, angle)
 
 
 _SOFT = _of(3e8)

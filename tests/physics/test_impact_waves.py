@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.dynamics import Approach, Modes, Settings, Striker, Support, scene_of, strike, traced
+from dentscope.dynamics import Approach, Modes, Settings, Striker, scene_of, strike, traced
 from dentscope.dynamics.beam import axial_frequencies, bending_modes, shear_coefficient
 from dentscope.dynamics.mechanisms.base import Surroundings
 from dentscope.dynamics.mechanisms.half_space_waves import HalfSpaceWaves
+from dentscope.dynamics.scene import ForceTransform
 from dentscope.dynamics.support import half_space_radiation, plate_support, radiated_shares
 from dentscope.models import LAWS
 from dentscope.models.published.hertz import HERTZ
@@ -105,6 +106,14 @@ def sears(v: float, K: float) -> tuple[float, float, float]:
     return max(force), len(force) * dt, float(np.trapezoid(force, dx=dt))
 
 
+def met(striker, law=HERTZ, *, sphere=STEEL, flat=STEEL, speed=1.0, **seams):
+    seams = {"gravity": 0.0, "approach": Approach(speed), **seams}
+    return scene_of(law, sphere=sphere, flat=flat, striker=striker, **seams)
+
+
+WAVES = ForceTransform(radiation=half_space_radiation(STEEL))
+
+
 @pytest.mark.parametrize("tip_radius", [0.0088, 0.2])
 def test_axial_waves_agree_with_sears(tip_radius: float) -> None:
     """A soft tip and a near-rigid one (R = 0.2 m: contact of one wave's round trip)."""
@@ -115,10 +124,9 @@ def test_axial_waves_agree_with_sears(tip_radius: float) -> None:
         tuple(axial_frequencies(LENGTH, STEEL, count=count)),
         (math.sqrt(2.0 / mass),) * count, zero, zero,
     )  # fmt: skip
-    scene = scene_of(
-        HERTZ, sphere=STEEL, flat=STEEL,
-        striker=Striker(mass=mass, tip_radius=tip_radius, length=LENGTH, radius=RADIUS),
-        approach=Approach(2.0), gravity=0.0, modes=modes,
+    scene = met(
+        Striker(mass=mass, tip_radius=tip_radius, length=LENGTH, radius=RADIUS),
+        speed=2.0, modes=modes,
     )  # fmt: skip
     impact = strike(scene, Settings(tolerance=1e-7))
     K = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(tip_radius)
@@ -129,18 +137,16 @@ def test_axial_waves_agree_with_sears(tip_radius: float) -> None:
     assert abs(impact.energy_residual) < 1e-6
 
 
-def sphere_on(support: Support, *, speed: float, R: float = 0.01) -> object:
-    mass = 4.0 / 3.0 * math.pi * R**3 * STEEL.density
-    return scene_of(
-        HERTZ, sphere=STEEL, flat=STEEL, striker=Striker(mass=mass, tip_radius=R),
-        approach=Approach(speed), gravity=0.0, support=support,
-    )  # fmt: skip
+def sphere(**seams):
+    """A ball of 10 mm at 1 m/s."""
+    mass = 4.0 / 3.0 * math.pi * 0.01**3 * STEEL.density
+    return met(Striker(mass=mass, tip_radius=0.01), **seams)
 
 
 def test_plate_loss_solves_zeners_equation() -> None:
     """Zener 1941: sigma'' + (1 + lambda d/dtau) sigma^(3/2) = 0, e = -sigma'(end)."""
     support = plate_support(STEEL, thickness=0.008)
-    scene = sphere_on(support, speed=1.0)
+    scene = sphere(support=support)
     m, K = scene.striker.mass, 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(0.01)
     tau = (m / K) ** 0.4  # time unit at unit speed: T v^(1/5)
     lam = m / tau * support.plate_mobility
@@ -166,9 +172,7 @@ def test_half_space_takes_hunters_share() -> None:
     body, rayleigh = radiated_shares(0.25)
     # Miller and Pursey 1955: compression, shear and Rayleigh waves carry 6.9, 25.8, 67.4 %.
     assert rayleigh / (body + rayleigh) == pytest.approx(0.674, abs=0.001)
-    kappa = half_space_radiation(STEEL)
-    scene = sphere_on(Support(), speed=1.0)
-    impact = strike(scene.with_(force=type(scene.force)(radiation=kappa)))
+    impact = strike(sphere(force=WAVES))
     c0 = math.sqrt(STEEL.E / STEEL.density)
     assert 1.0 - impact.restitution**2 == pytest.approx(1.04 * (1.0 / c0) ** 0.6, rel=0.1)
     # the force ends where the waves would pull: they take no more than the metal gives
@@ -177,12 +181,11 @@ def test_half_space_takes_hunters_share() -> None:
 
 def test_waves_beneath_a_plate_that_gives_way_take_energy_and_give_none() -> None:
     """A plate that runs ahead of the sphere ends the indentation: what waves take ends there."""
-    scene = scene_of(
-        LAWS["fitted"], sphere=STEEL.with_(Sy=1.2e9), flat=STEEL.with_(Sy=4e8),
-        striker=Striker(mass=0.0041, tip_radius=0.005), approach=Approach(20.0), gravity=0.0,
-        support=plate_support(STEEL, thickness=0.001),
+    scene = met(
+        Striker(mass=0.0041, tip_radius=0.005), LAWS["fitted"], sphere=STEEL.with_(Sy=1.2e9),
+        flat=STEEL.with_(Sy=4e8), speed=20.0, support=plate_support(STEEL, thickness=0.001),
+        force=WAVES,
     )  # fmt: skip
-    scene = scene.with_(force=type(scene.force)(radiation=half_space_radiation(STEEL)))
     impact = strike(scene)
     assert impact.radiated_J > 0.0
     assert abs(impact.energy_residual) < 1e-8
@@ -190,9 +193,9 @@ def test_waves_beneath_a_plate_that_gives_way_take_energy_and_give_none() -> Non
 
 def test_waves_of_a_plate_that_gives_way_go_by_the_rate_that_it_leaves() -> None:
     """F exceeds Hertz's by kappa (dF/d(depth))^2 d', d' that of both surfaces together."""
-    kappa, support = 200.0 * half_space_radiation(STEEL), plate_support(STEEL, thickness=0.004)
-    scene = sphere_on(support, speed=1.0)
-    trace = traced(scene.with_(force=type(scene.force)(radiation=kappa)), points=4000)
+    kappa, support = 200.0 * WAVES.radiation, plate_support(STEEL, thickness=0.004)
+    scene = sphere(support=support, force=ForceTransform(radiation=kappa))
+    trace = traced(scene, points=4000)
     t, once = np.unique(trace.column("time_s"), return_index=True)
     depth, force = (trace.column(name)[once] for name in ("penetration_m", "normal_force_N"))
     K = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(0.01)
@@ -206,7 +209,7 @@ def test_waves_of_a_plate_that_gives_way_go_by_the_rate_that_it_leaves() -> None
 @pytest.mark.parametrize(("share", "back"), [(0.1, 1.0), (0.575, 1.0 / math.pi), (1.0, 0.0)])
 def test_a_plate_bends_as_far_as_its_wave_is_back_within_the_contact(share, back) -> None:
     """From 0.15 of the contact to all of it a half-sine of force meets itself, later by the way."""
-    scene = sphere_on(Support(), speed=1.0)
+    scene = sphere()
     K = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(0.01)
     contact = 2.943 * (1.25 * scene.striker.mass / K) ** 0.4
     h = 0.5 * share * contact * math.sqrt(0.7 / (1.3 * 0.4) * STEEL.E / STEEL.density)
@@ -218,11 +221,10 @@ def test_a_plate_bends_as_far_as_its_wave_is_back_within_the_contact(share, back
 def test_a_growing_dent_sends_waves_by_the_slope_of_its_own_force() -> None:
     """F exceeds the law's by kappa (dF/d(depth))^2 d', with the law's exact derivative."""
     law, kappa = LAWS["fitted"], half_space_radiation(STEEL)
-    scene = scene_of(
-        law, sphere=STEEL.with_(Sy=2e9), flat=STEEL.with_(Sy=3e8),
-        striker=Striker(mass=0.024, tip_radius=0.009), approach=Approach(1.0),
+    scene = met(
+        Striker(mass=0.024, tip_radius=0.009), law, sphere=STEEL.with_(Sy=2e9),
+        flat=STEEL.with_(Sy=3e8), gravity=9.81, force=WAVES,
     )  # fmt: skip
-    scene = scene.with_(force=type(scene.force)(radiation=kappa))
     trace = traced(scene, points=200)
     depth, force = trace.column("penetration_m"), trace.column("normal_force_N")
     rate = np.abs(trace.column("normal_velocity_m_s"))

@@ -1,10 +1,11 @@
 """A set with a second sphere is simulated as its impact file is, and known as well as its law."""
 
 import math
-import tomllib
 
+import made_blows
 import numpy as np
 import pytest
+import tomlkit
 from dentscope.core import Material, Pair
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
@@ -12,44 +13,30 @@ from dentscope.discrepancy.rank import baseline_situations
 from dentscope.discrepancy.unknowns.lawerror import law_error
 from dentscope.dynamics import strike
 from dentscope.dynamics.files.second import SecondSphere
-from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import LAWS
 from dentscope.recordings import audit, read
+from made_files import changed
 
-RIG = """[target]
-shape = "sphere"
-radius_m = 0.010
-mass_kg = 0.0356
-E_Pa = 1.1e11
-nu = 0.34
-Sy_Pa = 3.0e8
-density_kg_m3 = 8500
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-mass_kg = 0.004084
-E_Pa = 2.05e11
-nu = 0.3
-Sy_Pa = 2.0e9
-density_kg_m3 = 7800
-"""
-NOISE = """[noise]
-restitution = 0.005
-rebound_speed_m_s = 0.01
-permanent_depth_m = 5e-7
-"""
+RIG = {
+    "target": {"shape": "sphere", "radius_m": 0.010, "mass_kg": 0.0356, "E_Pa": 1.1e11,
+               "nu": 0.34, "Sy_Pa": 3.0e8, "density_kg_m3": 8500},
+    "strikers": {"ball": {"shape": "sphere", "tip_radius_m": 0.005, "mass_kg": 0.004084,
+                          "E_Pa": 2.05e11, "nu": 0.3, "Sy_Pa": 2.0e9, "density_kg_m3": 7800}},
+}  # fmt: skip
+NOISE = {"restitution": 0.005, "rebound_speed_m_s": 0.01, "permanent_depth_m": 5e-7}
 HEAD = "trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m,rebound_speed_m_s\n"
 SPEEDS = (0.5, 1.5, 4.5)
 KINDS = {
-    "free": RIG, "held": RIG.replace("mass_kg = 0.0356\n", ""),
-    "seat": RIG.replace("mass_kg = 0.0356\n", "").replace("0.010", "-0.015"),
+    "free": RIG, "held": changed(RIG, {"target.mass_kg": None}),
+    "seat": changed(RIG, {"target": {"mass_kg": None, "radius_m": -0.015}}),
 }  # fmt: skip
 
 
 def problem(folder, rig):
     rows = [f"{k},ball,90,{v},0.5,1e-5,{0.5 * v}\n" for k, v in enumerate(SPEEDS)]
-    (folder / "set.toml").write_text(f'format = "recording-set/1"\n{rig}{NOISE}')
+    content = {"format": "recording-set/1", **rig, "noise": NOISE}
+    (folder / "set.toml").write_text(tomlkit.dumps(content))
     (folder / "trials.csv").write_text(HEAD + "".join(rows))
     return problem_of(read(folder))
 
@@ -61,8 +48,7 @@ def test_a_set_is_simulated_as_an_impact_file_is(tmp_path, kind):
     seen = Simulator(found).observe((), [Point(np.zeros(found.n_z))])
     scenes = found.scenes(np.zeros(found.n_z))
     for k, speed in enumerate(SPEEDS):
-        text = f"{KINDS[kind]}[impact]\nimpact_speed_m_s = {speed}\n"
-        setup = setup_of(tomllib.loads(text), source="file")
+        setup = made_blows.setup(KINDS[kind] | {"impact": {"impact_speed_m_s": speed}})
         alone = strike(setup.scene(law))
         assert strike(scenes[k]).restitution == pytest.approx(alone.restitution, abs=1e-9)
         assert seen["restitution"][0, k] == pytest.approx(alone.restitution, abs=1e-4)
@@ -75,7 +61,7 @@ def test_a_set_is_simulated_as_an_impact_file_is(tmp_path, kind):
 @pytest.mark.parametrize(("mass", "severity"), [(0.0356, "consistent"), (0.0456, "contradiction")])
 def test_a_free_sphere_is_weighed_as_a_striker_is(tmp_path, mass, severity):
     """4/3 pi (10 mm)^3 of 8500 kg/m^3 are 35.6 g."""
-    problem(tmp_path, RIG.replace("0.0356", str(mass)))
+    problem(tmp_path, changed(RIG, {"target.mass_kg": mass}))
     said = {f.check: f for f in audit(read(tmp_path)).findings}
     found = said["mass of the second sphere"]
     assert found.severity.value == severity

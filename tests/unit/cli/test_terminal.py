@@ -5,51 +5,45 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import typer
-from dentscope import __version__
+from dentscope import __version__, fem
 from dentscope.cli import app as assembly
 from dentscope.cli import doctor
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
 from dentscope.cli.doctor import EnvironmentFinding
 from dentscope.cli.shared.terminal import parts, say, show_table, tell_first_use
 from dentscope.core import Ending, InputError, Outcome
+from dentscope.core.inputs.templates import CASE
+from made_files import put
 from made_processes import python
 from rich.console import Console
-
-COMMAND = typer.main.get_command(assembly.app)
 
 
 def letters(text: str) -> str:
     return "".join(text.split())
 
 
-def commands() -> list[list[str]]:
-    def below(command, name):
-        found = [name]
-        for one in getattr(command, "commands", {}):
-            found += below(command.commands[one], [*name, one])
-        return found
-
-    return below(COMMAND, [])
+def commands(command, *name):
+    """Every command with its words, beginning with the program itself."""
+    yield name, command
+    for word, below in getattr(command, "commands", {}).items():
+        yield from commands(below, *name, word)
 
 
-def found_at(names):
-    command = COMMAND
-    for name in names:
-        command = command.commands[name]
-    return command
+COMMANDS = dict(commands(typer.main.get_command(assembly.app)))
 
 
 @pytest.mark.parametrize("width", [60, 80, 120])
-@pytest.mark.parametrize("names", commands(), ids=" ".join)
+@pytest.mark.parametrize("names", COMMANDS, ids=" ".join)
 def test_help_is_whole_at_every_width(names, width, monkeypatch, prints):
     monkeypatch.setenv("COLUMNS", str(width))
     shown = prints(*names, "-h")
     assert max(map(len, shown.splitlines())) <= width
     assert "…" not in shown
-    command = found_at(names)
+    command = COMMANDS[names]
     for told in (command.help, *(getattr(p, "help", "") for p in command.params)):
         # every sentence as it was written, its units in square brackets too
         paragraph = letters((told or "").split("\n\n")[0])
@@ -210,21 +204,10 @@ def test_how_the_command_line_ends_early(monkeypatch, capsys, raised, code, line
 def test_a_case_that_does_not_converge_ends_with_its_reason_and_code_3(
     monkeypatch, capsys, tmp_path
 ):
-    from dentscope import fem
-
-    text = (
-        "radius_m = 0.01\n[sphere]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 1e9\n"
-        "[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 1e9\n[load]\nmax_delta_over_R = 0.01\n"
-    )
-    (tmp_path / "case.toml").write_text(text)
-
-    class Stopped:
-        outcome = Outcome(Ending.NOT_CONVERGED, "first step failed.", "Take smaller steps.")
-
-        class loading:
-            delta = ()
-
-    monkeypatch.setattr(fem, "solve", lambda *a, **k: Stopped())
+    put(tmp_path / "case.toml", CASE)
+    stopped = Outcome(Ending.NOT_CONVERGED, "first step failed.", "Take smaller steps.")
+    solved = SimpleNamespace(outcome=stopped, loading=SimpleNamespace(delta=()))
+    monkeypatch.setattr(fem, "solve", lambda *a, **k: solved)
     code = assembly.run(["case", str(tmp_path / "case.toml"), "--out", str(tmp_path / "out")])
     shown = " ".join(capsys.readouterr().out.split())
     assert code == 3

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core.inputs.templates import CASE, INVERSE, template
+from made_files import put
 from made_processes import python
 
 
@@ -28,159 +29,53 @@ def _folder_of_a_newcomer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         (tmp_path / name).write_text(text)
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00\x01" * 20)
     (tmp_path / "folder").mkdir()
-    (tmp_path / "half-set").mkdir()
-    (tmp_path / "half-set" / "set.toml").write_text('format = "recording-set/1"\n')
+    put(tmp_path / "half-set" / "set.toml", 'format = "recording-set/1"\n')
 
 
-LINES = """
-nonsense
-Impact
---nonsense
--x
-impact
-impact ball.toml extra
-impact --law
-impact absent.toml
-impact folder
-impact words.txt
-impact broken.toml
-impact bytes.toml
-impact empty.toml
-impact case.toml
-impact rod.toml
-impact ball.toml --law nonsense
-impact ball.toml --law hertz --law Hertz
-impact ball.toml --law kogut-etsion+
-impact ball.toml --out words.txt
-impact ball.toml --out words.txt/below
-impact ball.toml --outt build
-impact --new
-impact --new cube
-impact --new ball ball.toml
-impact --new ball words.txt/ball.toml
-case
-case absent.toml
-case folder
-case words.csv
-case broken.toml
-case bytes.toml
-case empty.toml
-case ball.toml
-case case.toml --out words.txt
-case case.toml --level smoke
-case --new case.toml
-inverse absent.toml
-inverse folder
-inverse broken.toml
-inverse empty.toml
-inverse ball.toml
-inverse rod.toml --out words.txt
-inverse
-inverse --new rod.toml
-laws nonsense
-laws show
-laws show nonsense
-laws show kogut-etsion+nonsense
-laws show wang
-laws compare
-laws compare absent.toml
-laws compare folder
-laws compare empty.toml
-laws compare ball.toml
-laws compare case.toml --law nonsense
-laws compare case.toml --law kelvin-voigt
-laws compare case.toml --out words.txt
-laws list extra
-diagnose
-diagnose absent
-diagnose folder
-diagnose half-set
-diagnose words.txt
-diagnose kharaz-2001-oblique --out words.txt
-diagnose kharaz-2001-oblique --seed many
-diagnose kharaz-2001-oblique --law hertz
-diagnose kharaz-2001-oblique --seed 1.5
-diagnose kharaz-2001-oblique --seed -1
-diagnose kharaz-2001-oblique --assume drag
-diagnose kharaz-2001-oblique liquidmetal-bounces
-recordings nonsense
-recordings check
-recordings check absent
-recordings check folder
-recordings check half-set
-recordings check words.txt
-recordings audit absent
-recordings audit half-set
-recordings list absent
-recordings list words.txt
-recordings new
-recordings new half-set
-recordings new words.txt
-recordings new words.txt/below
-recordings fetch nonsense
-recordings fetch --catalogue absent.toml
-recordings fetch --out words.txt
-reduce nonsense
-reduce table --holds force
-reduce sound folder
-reduce video
-reduce video words.mp4
-reduce video words.mp4 --frame-rate-hz fast --pixel-m 1e-4
-reduce video words.mp4 --frame-rate-hz -5 --pixel-m 1e-4
-reduce tip words.png
-reduce tip words.png --pixel-m 0
-reduce mocap words.csv --shape cube
-reduce sound words.wav --out words.txt
-reduce table words.csv --holds rebounds --into words.txt
-campaign nonsense
-campaign run --design huge
-campaign run --workers 0
-campaign run --workers some
-campaign run --retry all
-campaign run --out words.txt
-campaign status --design huge
-campaign show
-campaign show zz
-campaign show 0
-campaign export --data absent.h5
-campaign export --data words.h5
-campaign export --to table.xls
-campaign export --to folder
-campaign publish --design huge
-campaign publish --design smoke --out folder
-campaign refine zz
-campaign repair --out absent
-fit absent.h5
-fit words.h5
-fit folder
-fit --out words.txt
-fit --judge absent
-fit --judge words.txt
-export law --out words.txt
-export dem ball.toml --law nonsense
-examples --to words.txt
-examples extra
-keys nonsense
-doctor extra
-version extra
-verify --only nonsense
-proof nonsense
-proof run --list nonsense
-figures --chapter 9
-figures --fields 9.9
-figures --out words.txt
-verify --folder words.txt
-verify --report folder
-proof sample words.txt
-proof sample new --kind nonsense
-proof sample new --seed -1
-proof sample new --count 0
-proof run --most 0
-proof score --out words.txt
-"""
+COMMON = "absent.toml | folder | broken.toml | empty.toml"
+LINES = {
+    "": "nonsense | Impact | --nonsense | -x | doctor extra | version extra | keys nonsense",
+    "impact": f"| {COMMON} | words.txt | bytes.toml | case.toml | rod.toml | ball.toml extra"
+    "| --law | ball.toml --law nonsense | ball.toml --law hertz --law Hertz"
+    "| ball.toml --outt build | ball.toml --law kogut-etsion+ | ball.toml --out words.txt"
+    "| ball.toml --out words.txt/below | --new | --new cube | --new ball ball.toml"
+    "| --new ball words.txt/ball.toml",
+    "case": f"| {COMMON} | words.csv | bytes.toml | ball.toml | case.toml --out words.txt"
+    "| case.toml --level smoke | --new case.toml",
+    "inverse": f"| {COMMON} | ball.toml | rod.toml --out words.txt | --new rod.toml",
+    "laws": "nonsense | show | show nonsense | show kogut-etsion+nonsense | show wang | list extra",
+    "laws compare": "| absent.toml | folder | empty.toml | ball.toml | case.toml --law nonsense"
+    "| case.toml --law kelvin-voigt | case.toml --out words.txt",
+    "diagnose": "| absent | folder | half-set | words.txt",
+    "diagnose kharaz-2001-oblique": "liquidmetal-bounces | --out words.txt | --seed many"
+    "| --seed 1.5 | --seed -1 | --law hertz | --assume drag",
+    "recordings": "nonsense | audit absent | audit half-set | list absent | list words.txt | new"
+    "| new half-set | new words.txt | new words.txt/below | fetch nonsense"
+    "| fetch --catalogue absent.toml | fetch --out words.txt",
+    "recordings check": "| absent | folder | half-set | words.txt",
+    "reduce": "nonsense | table --holds force | sound folder | video | video words.mp4"
+    "| video words.mp4 --frame-rate-hz fast --pixel-m 1e-4"
+    "| video words.mp4 --frame-rate-hz -5 --pixel-m 1e-4 | tip words.png"
+    "| tip words.png --pixel-m 0 | mocap words.csv --shape cube | sound words.wav --out words.txt"
+    "| table words.csv --holds rebounds --into words.txt",
+    "campaign": "nonsense | run --design huge | run --workers 0 | run --workers some"
+    "| run --retry all | run --out words.txt | status --design huge | show | show zz | show 0"
+    "| export --data absent.h5 | export --data words.h5 | export --to table.xls"
+    "| export --to folder | publish --design huge | publish --design smoke --out folder"
+    "| refine zz | repair --out absent",
+    "fit": "absent.h5 | words.h5 | folder | --out words.txt | --judge absent | --judge words.txt",
+    "export": "law --out words.txt | dem ball.toml --law nonsense",
+    "examples": "--to words.txt | extra",
+    "figures": "--chapter 9 | --fields 9.9 | --out words.txt",
+    "verify": "--only nonsense | --folder words.txt | --report folder",
+    "proof": "nonsense | run --list nonsense | run --most 0 | sample words.txt"
+    "| sample new --kind nonsense | sample new --seed -1 | sample new --count 0"
+    "| score --out words.txt",
+}
+"""What follows a command, with nothing before the first bar: the command alone."""
 SEVERAL = ("empty.toml", "case.toml", "rod.toml", "ball.toml", "folder", "half-set", "drag")
 """Files of another kind, and words of a list: a line a mistake."""
-USES = [line.split() for line in LINES.strip().splitlines()]
+USES = [f"{command} {words}".split() for command, row in LINES.items() for words in row.split("|")]
 SAID = {
     "impact --new ball ball.toml": "exists (allowed: a name that is free)",
     "impact --new cube": "no set-up 'cube' (allowed: ball, rod, oblique-ball)",

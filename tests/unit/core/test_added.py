@@ -7,7 +7,6 @@ from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from types import SimpleNamespace
 
-import dentscope as ds
 import pytest
 from dentscope.core import InputError
 from dentscope.core.inputs import added
@@ -55,6 +54,9 @@ class Brake(Mechanism):
 
 @pytest.fixture
 def packages(monkeypatch):
+    """Installs a thing of this file, or of no file, under the name of an entry point."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+
     def install(**points):
         found = EntryPoints(
             EntryPoint(name, value, f"dentscope.{group}") for group, (name, value) in points.items()
@@ -67,12 +69,7 @@ def packages(monkeypatch):
 HERE = Path(__file__).stem
 
 
-@pytest.fixture
-def importable(monkeypatch):
-    monkeypatch.syspath_prepend(str(Path(__file__).parent))
-
-
-def test_a_law_of_another_package_is_found_by_its_name(packages, importable, prints):
+def test_a_law_of_another_package_is_found_by_its_name(packages, prints):
     packages(laws=("toy", f"{HERE}:TOY_LAW"))
     assert "Of other packages: toy." in prints("laws", "list")
     assert law_named("toy") is LAWS["toy"] is TOY_LAW
@@ -87,7 +84,7 @@ def test_a_package_that_fails_is_one_line(packages):
     assert "\n" not in str(caught.value)
 
 
-def test_a_mechanism_of_another_package_is_tried_too(packages, importable):
+def test_a_mechanism_of_another_package_is_tried_too(packages):
     packages(mechanisms=("toy", f"{HERE}:Toy"))
     [own] = own_mechanisms(())
     assert own.name == "toy"
@@ -96,7 +93,7 @@ def test_a_mechanism_of_another_package_is_tried_too(packages, importable):
     assert "neither the calibration of the probabilities nor the blind proof" in note
 
 
-def test_a_mechanism_of_another_package_acts_in_an_impact(packages, importable):
+def test_a_mechanism_of_another_package_acts_in_an_impact(packages):
     packages(mechanisms=("brakes", f"{HERE}:Brake"))
     content = tomllib.loads(template("ball")) | {"sweep": {}}
     content["impact"] = {"impact_speed_m_s": 2.0, "laws": ["fitted"]}
@@ -124,20 +121,21 @@ def test_what_is_no_mechanism_or_bears_a_name_of_the_library_is_refused(packages
         own_mechanisms(given)
 
 
-def test_a_reader_of_another_package_reduces(packages, importable, tmp_path):
+def test_a_reader_of_another_package_reduces_or_is_told_with_the_file(packages, tmp_path):
     packages(readers=("toy", f"{HERE}:TOY_READER"))
     assert kinds.all_kinds()["toy"] == "two heights"
     (tmp_path / "raw.txt").write_text("1 0.64")
     assert kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="") == "1 0.64"
+    (tmp_path / "raw.txt").write_bytes(b"\xff")
+    with pytest.raises(InputError, match=r"raw\.txt: its numbers cannot be reduced \(.*decode"):
+        kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="")
 
 
 @pytest.mark.parametrize(
     ("reader", "said"),
     [("no_such_package", "cannot be loaded"), (f"{HERE}:TOY_LAW", "has no ABOUT")],
 )
-def test_a_reader_that_fails_is_one_line_and_the_others_still_work(
-    packages, importable, reader, said
-):
+def test_a_reader_that_fails_is_one_line_and_the_others_still_work(packages, reader, said):
     packages(readers=("toy", reader))
     about = kinds.all_kinds()
     assert said in about["toy"]
@@ -145,17 +143,3 @@ def test_a_reader_that_fails_is_one_line_and_the_others_still_work(
     assert kinds.load_kind("table").name == "table"
     with pytest.raises(InputError, match=said):
         kinds.load_kind("toy")
-
-
-def test_a_file_that_a_reader_of_another_package_cannot_read_is_one_line(
-    packages, importable, tmp_path
-):
-    packages(readers=("toy", f"{HERE}:TOY_READER"))
-    (tmp_path / "raw.txt").write_bytes(b"\xff")
-    with pytest.raises(InputError, match=r"raw\.txt: its numbers cannot be reduced \(.*decode"):
-        kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="")
-
-
-def test_a_law_of_ones_own_strikes():
-    found = ds.impact("ball", law=LAWS["hertz"], speed=1.0)
-    assert found["hertz"].restitution == pytest.approx(1.0, abs=1e-6)

@@ -13,19 +13,16 @@ import numpy as np
 from dentscope.core import compiled
 from dentscope.core.compiled import compiled_sources, source_digest
 from dentscope.core.unowned import unowned
+from made_files import put
 from made_processes import python
 from numba import njit
 
 
 def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
-    (tmp_path / "fem").mkdir()
-    (tmp_path / "core").mkdir()
-    kernel = tmp_path / "fem" / "kernel.py"
-    constants = tmp_path / "core" / "constants.py"
-    other = tmp_path / "fem" / "other.py"
-    kernel.write_text("from numba import njit\nfrom ..core.constants import X\n")
-    constants.write_text("X = 1\n")
-    other.write_text("y = 1\n")
+    text = "from numba import njit\nfrom ..core.constants import X\n"
+    kernel = put(tmp_path / "fem" / "kernel.py", text)
+    constants = put(tmp_path / "core" / "constants.py", "X = 1\n")
+    other = put(tmp_path / "fem" / "other.py", "y = 1\n")
     before = source_digest(tmp_path)
     other.write_text("y = 2\n")
     assert source_digest(tmp_path) == before

@@ -1,14 +1,17 @@
-"""Files and rigs: what is none, what is too large, mistakes in one line, the same in every file."""
+"""Files, rigs and origins: what is none, what is too large, mistakes in one line."""
 
 import math
 import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.core import Ending, InputError, InputErrors, Material, Outcome, Pair
+from dentscope.core import InputError, InputErrors, Material, Pair, provenance, rendering
+from dentscope.core.errors import Ending, Outcome
 from dentscope.core.inputs.input_file import read_bytes
 from dentscope.core.inputs.templates import template, write_new
 from dentscope.core.inputs.toml_input import parse_model, read_model, read_toml
@@ -21,7 +24,7 @@ from dentscope.dynamics.files.setup import SetupFile
 from dentscope.dynamics.files.sweep import SweepTable
 from dentscope.recordings import SetFile
 from dentscope.start.case_file import CaseFile
-from made_files import put
+from made_files import changed, put
 from pydantic import TypeAdapter, ValidationError
 
 
@@ -37,14 +40,23 @@ def test_a_pipe_a_device_and_a_large_file_are_a_line_each(tmp_path):
         read_toml(tmp_path / "large")
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [("a = " + "[" * 5000, "nested too deep"), (f"a = {'9' * 5000}", "too many digits")],
-)
-def test_what_python_cannot_hold_is_a_line(tmp_path, text, line):
-    (tmp_path / "a.toml").write_text(text)
-    with pytest.raises(InputError, match=line):
-        read_toml(tmp_path / "a.toml")
+BAD_TOML = {
+    "nested": (b"a = " + b"[" * 5000, "nested too deep"),
+    "digits": (b"a = " + b"9" * 5000, "too many digits"),
+    "UTF-16": ("a = 1\n".encode("utf-16"), r"UTF-16.*saved as UTF-8"),
+    "bytes": (b"\xff\xfe\x00", r"a\.toml"),
+    "half a line": (b"a = ", r"a\.toml"),
+    "a key twice": (b"a = 1\na = 2\n", r"a\.toml"),
+}
+
+
+@pytest.mark.parametrize("reads", [read_toml, lambda path: read_model(path, MaterialTable)])
+@pytest.mark.parametrize(("content", "line"), BAD_TOML.values(), ids=BAD_TOML)
+def test_a_file_that_is_no_toml_is_one_line(tmp_path, content, line, reads):
+    (tmp_path / "a.toml").write_bytes(content)
+    with pytest.raises(InputError, match=line) as caught:
+        reads(tmp_path / "a.toml")
+    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_a_hundred_thousand_bad_rows_are_twenty_lines_and_a_count(tmp_path, errs):
@@ -139,14 +151,6 @@ def test_every_mistake_of_a_file_is_one_line(tmp_path):
     assert "unknown key" in lines[2]
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"a = ", b"a = 1\na = 2\n"])
-def test_a_file_that_is_no_toml_is_one_line(tmp_path, content):
-    (tmp_path / "body.toml").write_bytes(content)
-    with pytest.raises(InputError) as caught:
-        read_model(tmp_path / "body.toml", MaterialTable)
-    assert len(str(caught.value).splitlines()) == 1
-
-
 def test_content_id_ignores_order_and_keeps_every_digit():
     assert content_id({"a": 0.1, "b": (1, 2)}) == content_id({"b": [1, 2], "a": 0.1})
     assert content_id({"a": 0.1}) != content_id({"a": 0.1 + 2e-17 * 8})
@@ -168,12 +172,8 @@ def test_mistakes_cross_to_another_process_one_by_one():
     assert [error.key for error in both.errors] == ["E_Pa", "law"]
 
 
-def test_a_byte_order_mark_is_passed_over_and_utf_16_is_named(tmp_path):
-    path = put(tmp_path / "a.toml", "a = 1\n")
-    assert read_toml(path) == {"a": 1}
-    path.write_text("a = 1\n", encoding="utf-16")
-    with pytest.raises(InputError, match=r"UTF-16.*saved as UTF-8"):
-        read_toml(path)
+def test_a_byte_order_mark_is_passed_over(tmp_path):
+    assert read_toml(put(tmp_path / "a.toml", "\ufeffa = 1\n")) == {"a": 1}
 
 
 def test_long_names_are_cut_and_tables_beyond_number_are_refused_at_once(tmp_path):
@@ -221,37 +221,28 @@ FILES = {
     SetupFile: {"impact": {"impact_speed_m_s": 1.0}},
 }
 MISTAKES = {
-    ("strikers", "rod", "length_m"): (None, "strikers.rod.length_m: missing"),
-    ("strikers", "rod", "mass_kg"): (None, "strikers.rod.mass_kg: missing"),
-    ("strikers", "rod", "shape"): ("cube", "strikers.rod.shape: 'cube'"),
-    ("strikers", "rod", "E_Pa"): (-1.0, "strikers.rod.E_Pa: -1"),
-    ("strikers", "rod", "tip_flat_radius_m"): (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
-    ("target", "nu"): (0.5, "target.nu: 0.5"),
-    ("target", "density_kg_m3"): ({"value": 7.8}, "target.density_kg_m3: 7.8 .*allowed: a number"),
-    ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
-    ("target", "Sy_Pa"): ({"value": 3e8, "known": "well"}, 'target.Sy_Pa: .*known = "guess"'),
-    ("strikers", "rod", "Sy_Pa"): ({"value": 3e8, "std": 1e7, "known": "guess"}, "std, not both"),
-    ("strikers", "rod", "mass"): (1.0, "strikers.rod.mass: unknown key"),
-    ("noise",): ({"restituton": 0.1}, "noise.restituton: unknown key"),
-    ("friction",): ({"coefficient": -1.0}, "friction.coefficient: -1.0"),
-    ("environment",): ({"temperature_K": 0.0}, "environment.temperature_K: 0.0"),
+    "strikers.rod.length_m": (None, "strikers.rod.length_m: missing"),
+    "strikers.rod.mass_kg": (None, "strikers.rod.mass_kg: missing"),
+    "strikers.rod.shape": ("cube", "strikers.rod.shape: 'cube'"),
+    "strikers.rod.E_Pa": (-1.0, "strikers.rod.E_Pa: -1"),
+    "strikers.rod.tip_flat_radius_m": (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
+    "target.nu": (0.5, "target.nu: 0.5"),
+    "target.density_kg_m3": ({"value": 7.8}, "target.density_kg_m3: 7.8 .*allowed: a number"),
+    "target.E_Pa": ("steel", "target.E_Pa: 'steel'"),
+    "target.Sy_Pa": ({"value": 3e8, "known": "well"}, 'target.Sy_Pa: .*known = "guess"'),
+    "strikers.rod.Sy_Pa": ({"value": 3e8, "std": 1e7, "known": "guess"}, "std, not both"),
+    "strikers.rod.mass": (1.0, "strikers.rod.mass: unknown key"),
+    "noise": ({"restituton": 0.1}, "noise.restituton: unknown key"),
+    "friction": ({"coefficient": -1.0}, "friction.coefficient: -1.0"),
+    "environment": ({"temperature_K": 0.0}, "environment.temperature_K: 0.0"),
 }
 
 
-def changed(content, place, value):
-    """A copy of nested tables with one key set, or left out where `value` is none."""
-    first, *rest = place
-    if rest:
-        return {**content, first: changed(content[first], rest, value)}
-    left = {k: v for k, v in content.items() if k != first}
-    return left if value is None else {**left, first: value}
-
-
 @pytest.mark.parametrize("model", FILES, ids=lambda m: m.__name__)
-@pytest.mark.parametrize("place", MISTAKES, ids=".".join)
+@pytest.mark.parametrize("place", MISTAKES)
 def test_a_mistake_reads_the_same_in_every_file(model, place):
     value, line = MISTAKES[place]
-    content = changed({**FILES[model], **BODIES}, place, value)
+    content = changed({**FILES[model], **BODIES}, {place: value})
     with pytest.raises(InputErrors, match=line) as caught:
         parse_model(content, model, source="a.toml")
     assert len(caught.value.errors) == 1
@@ -272,7 +263,7 @@ def test_a_rig_gives_the_bodies_of_a_scene():
 
 
 def test_what_is_not_stated_is_a_mistake_unless_something_stands_in():
-    rig = parse_model(changed(BODIES, ("target", "E_Pa"), None), Rig, source="a.toml")
+    rig = parse_model(changed(BODIES, {"target.E_Pa": None}), Rig, source="a.toml")
     with pytest.raises(InputError, match=r"a\.toml: target\.E_Pa: missing"):
         bodies_of(rig.numbers(), "rod", source="a.toml")
     assert bodies_of(rig.numbers().assuming(E_Pa=1e11), "rod")[0].flat.E == 1e11
@@ -312,7 +303,7 @@ def test_a_sphere_is_a_solid_ball():
 
 
 @pytest.mark.parametrize(
-    ("changed", "key"),
+    ("changes", "key"),
     [
         ({"tip_radius_m": None}, "tip_radius_m"),
         ({"tip_radius_m": -0.005}, "tip_radius_m"),
@@ -320,11 +311,10 @@ def test_a_sphere_is_a_solid_ball():
         ({"density_kg_m3": None}, "mass_kg"),
     ],
 )
-def test_what_a_spheres_mass_follows_from_is_missed_in_one_line(changed, key) -> None:
-    stated = {"shape": "sphere", "tip_radius_m": 0.005, "density_kg_m3": 7800.0, **changed}
-    given = {name: value for name, value in stated.items() if value is not None}
+def test_what_a_spheres_mass_follows_from_is_missed_in_one_line(changes, key) -> None:
+    stated = {"shape": "sphere", "tip_radius_m": 0.005, "density_kg_m3": 7800.0}
     with pytest.raises(InputErrors) as failure:
-        parse_model(given, StrikerTable, source="ball.toml")
+        parse_model(changed(stated, changes), StrikerTable, source="ball.toml")
     assert [error.key for error in failure.value.errors] == [key]
 
 
@@ -340,7 +330,7 @@ def test_one_number_of_a_rig_is_replaced_and_the_rest_is_shared():
 
 
 def test_a_strength_follows_from_the_hardness_and_a_rigid_body_has_no_number():
-    hard = changed(changed(BODIES, ("target", "Sy_Pa"), None), ("target", "hardness_Pa"), 2.8e9)
+    hard = changed(BODIES, {"target": {"Sy_Pa": None, "hardness_Pa": 2.8e9}})
     found = parse_model(hard, Rig, source="a.toml").numbers()
     assert found.of["target.Sy_Pa"] == pytest.approx(1e9, rel=1e-12)
     rigid = parse_model({**BODIES, "target": {"rigid": True}}, Rig, source="a.toml").numbers()
@@ -371,11 +361,65 @@ def test_a_sphere_may_have_its_radius_as_a_body_has():
 @pytest.mark.parametrize(
     ("place", "told"),
     [
-        (("target", "densty_kg_m3"), r"did you mean density_kg_m3\?"),
-        (("coefficient",), r"it belongs in \[friction\]"),
-        (("length_m",), r"it belongs in \[strikers.NAME\]"),
+        ("target.densty_kg_m3", r"did you mean density_kg_m3\?"),
+        ("coefficient", r"it belongs in \[friction\]"),
+        ("length_m", r"it belongs in \[strikers.NAME\]"),
     ],
 )
 def test_an_unknown_key_is_told_with_what_may_be_meant(place, told):
     with pytest.raises(InputErrors, match=f"unknown key; {told}"):
-        parse_model(changed(BODIES, place, 1.0), Rig, source="a.toml")
+        parse_model(changed(BODIES, {place: 1.0}), Rig, source="a.toml")
+
+
+def test_digest_of_a_file_is_the_published_one(tmp_path):
+    path = tmp_path / "abc"
+    path.write_bytes(b"abc")
+    # FIPS 180-2, appendix B.1
+    expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    assert provenance.file_digest(path) == expected
+
+
+def test_environment_names_what_influences_numbers():
+    found = provenance.environment()
+    assert {"dentscope", "python", "numpy", "scipy", "gmsh", "commit"} <= set(found)
+    assert found["python"] == sys.version.split()[0]
+
+
+def test_an_edited_source_is_another_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "core" / "provenance.py"))
+    (tmp_path / "fem").mkdir()
+    sources = set()
+    for text in ("a = 1\n", "a = 2\n", "a = 1\n"):
+        (tmp_path / "fem" / "solve.py").write_text(text)
+        sources.add(provenance._source())
+    assert len(sources) == 2
+
+
+def test_numbers_that_are_not_finite_have_an_identity():
+    assert provenance.content_id(math.inf) != provenance.content_id(-math.inf)
+    assert provenance.content_id(math.nan) == provenance.content_id(math.nan)
+
+
+def test_rigid_partner_leaves_the_whole_approach_to_the_other_body():
+    rigid = Material(E=math.nan, nu=math.nan, rigid=True)
+    steel = Material(E=200e9, nu=0.3, Sy=1e9)
+    assert Pair(steel, rigid, 1e-3).elastic_share == 1.0
+    assert Pair(rigid, steel, 1e-3).elastic_share == 0.0
+    assert Pair(rigid, steel, 1e-3).Sy_ratio == math.inf
+    assert Pair(rigid, steel, 1e-3).weaker is steel
+
+
+@pytest.mark.parametrize(("code", "expected"), [(0, True), (1, False), (-11, False)])
+def test_a_crash_of_the_probe_is_a_no(monkeypatch, code, expected):
+    monkeypatch.setattr(
+        rendering.subprocess, "run", lambda *a, **k: subprocess.CompletedProcess(a, code)
+    )
+    assert rendering.offscreen_available.__wrapped__() is expected
+
+
+def test_a_probe_that_hangs_is_a_no(monkeypatch):
+    def hang(*arguments, **options):
+        raise subprocess.TimeoutExpired("probe", options["timeout"])
+
+    monkeypatch.setattr(rendering.subprocess, "run", hang)
+    assert rendering.offscreen_available.__wrapped__() is False

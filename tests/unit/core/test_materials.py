@@ -12,15 +12,17 @@ from dentscope.core.inputs.flow_curve import MeasuredFlow
 from dentscope.core.inputs.materials import entry_named, filled, materials, sources
 from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import BodyTable, MaterialTable, Quantity, Rig, TargetTable
+from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import rises_misfit
 from dentscope.start.case_file import HardeningTable, RateTable
+from made_files import put
 
 
 def blow(name, tmp_path, prints):
-    file = tmp_path / "ball.toml"
-    file.write_text(
+    file = put(
+        tmp_path / "ball.toml",
         f'[target]\nmaterial = "{name}"\n[strikers.ball]\nshape = "sphere"\n'
         'tip_radius_m = 0.003\nmaterial = "tungsten-carbide-6co"\n'
-        '[impact]\ndrop_height_m = 1.0\nlaws = ["fitted"]\n'
+        '[impact]\ndrop_height_m = 1.0\nlaws = ["fitted"]\n',
     )
     return prints("impact", file, "--out", tmp_path / "out")
 
@@ -191,11 +193,11 @@ def test_hardening_and_rate_are_those_of_the_same_kind_first(tmp_path, prints):
 
 def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_path, errs):
     """The name has the line, not the numbers that it would have given."""
-    path = tmp_path / "typed.toml"
-    path.write_text(
+    path = put(
+        tmp_path / "typed.toml",
         '[target]\nmaterial = "steel-1016-hot-rolled"\n'
         '[strikers.ball]\nshape = "sphere"\nmaterial = "tungsten-carbide"\ntip_radius_m = 0.0025\n'
-        "[impact]\ndrop_height_m = 0.5\n"
+        "[impact]\ndrop_height_m = 0.5\n",
     )
     lines = errs("impact", path).splitlines()
     assert len(lines) == 2
@@ -253,8 +255,6 @@ def test_a_strength_from_a_hardness_is_known_to_a_tenth_and_what_the_hardness_is
 
 def test_two_specimens_of_a_metal_differ_by_a_tenth() -> None:
     """Each by 7 %: the difference of two by 7 % times the root of 2."""
-    from dentscope.dynamics.mechanisms.strength.strain_rate_hardening import rises_misfit
-
     found = rises_misfit(
         [(1000.0, 1.0)], np.array(math.expm1(0.07 * math.sqrt(2.0))), np.array(0.0)
     )

@@ -1,19 +1,28 @@
-"""Parameters for discrete-element codes: Hertz's impact, exact balances, and LAMMPS itself."""
+"""Parameters and files for other programs: exact balances, and LAMMPS, MuJoCo, YADE, Drake."""
 
 import math
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import replace
 
+import numpy as np
 import pytest
 import tomlkit
 from dentscope.core import InputError, Material, Pair
+from dentscope.core.inputs.second_sphere import StruckSphere
 from dentscope.core.inputs.templates import template
 from dentscope.dynamics import strike
-from dentscope.dynamics.export.collisions import TSUJI, damping_for
+from dentscope.dynamics.export import simulators
+from dentscope.dynamics.export.collisions import DASHPOT, HUNT, TSUJI, blow_on, damping_for
 from dentscope.dynamics.export.discrete_elements import substitutes, two_balls
 from dentscope.dynamics.export.lammps import lammps_lines
 from dentscope.models import LAWS
 from dentscope.start.ball_file import read_ball
 from made_blows import ball_setup
-from made_files import put, rows_of
+from made_files import changed, put, rows_of
 from scipy.integrate import solve_ivp
 
 STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
@@ -110,32 +119,24 @@ def test_two_balls_have_half_the_mass_and_half_the_radius():
     assert row.law.depth == pytest.approx(depth, rel=1e-4)
 
 
-BALL = """
-[target]
-E_Pa = { value = 6.89e10, std = 1e9 }
-nu = 0.33
-Sy_Pa = 2.76e8
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.003
-E_Pa = 1.93e11
-nu = 0.29
-Sy_Pa = 7.0e8
-density_kg_m3 = 8000
-[friction]
-coefficient = 0.3
-[impact]
-impact_speed_m_s = 1.0
-support = "half-space"
-[sweep]
-impact_speed_m_s = { from = 0.1, to = 10, count = 21, spacing = "log" }
-"""
+BALL = {
+    "target": {"E_Pa": {"value": 6.89e10, "std": 1e9}, "nu": 0.33, "Sy_Pa": 2.76e8},
+    "strikers": {"ball": {"shape": "sphere", "tip_radius_m": 0.003, "E_Pa": 1.93e11, "nu": 0.29,
+                          "Sy_Pa": 7.0e8, "density_kg_m3": 8000}},
+    "friction": {"coefficient": 0.3},
+    "impact": {"impact_speed_m_s": 1.0},
+}  # fmt: skip
+
+
+def written(tmp_path, changes):
+    return put(tmp_path / "ball.toml", tomlkit.dumps(changed(BALL, changes)))
 
 
 def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, prints):
     """LAMMPS returned 0.92622, 0.69347 and 0.45486 with these parameters."""
-    text = BALL.replace("[strikers", "density_kg_m3 = 2700\n[strikers")
-    file = put(tmp_path / "ball.toml", text)
+    speeds = {"from": 0.1, "to": 10, "count": 21, "spacing": "log"}
+    more = {"target.density_kg_m3": 2700, "impact.support": "half-space"}
+    file = written(tmp_path, {**more, "sweep.impact_speed_m_s": speeds})
     told = prints("export", "dem", file, "--out", tmp_path)
     assert "target.E_Pa.std = 1e+09" in told
     assert "impact.support = half-space" in told
@@ -219,20 +220,18 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path,
 
 
 def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, prints):
-    curve = '[target.hardening]\nlaw = "swift"\nK_Pa = 5e8\nn = 0.2\n'
-    rigid = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
-    file = put(tmp_path / "ball.toml", rigid + 'laws = ["fitted", "hardening"]\n' + curve)
+    curve, laws = {"law": "swift", "K_Pa": 5e8, "n": 0.2}, ["fitted", "hardening"]
+    file = written(tmp_path, {"target.hardening": curve, "impact.laws": laws})
     assert read_ball(file).law == "hardening"
     told = prints("export", "dem", file, "--law", "fitted", "--out", tmp_path)
     assert "fitted takes the first strength of each metal" in told
 
 
 def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
-    rate = "\n[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 1.9\nrate_exponent = 0.2\n"
-    plain = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
+    rate = {"strain-rate-hardening": {"rise_at_1000_per_s": 1.9, "rate_exponent": 0.2}}
     found = {}
-    for name, text in (("without", plain), ("with", plain + rate)):
-        file = put(tmp_path / "ball.toml", text)
+    for name, changes in (("without", {}), ("with", {"mechanisms": rate})):
+        file = written(tmp_path, changes)
         ball, told = read_ball(file), prints("export", "dem", file, "--out", tmp_path)
         assert ("no rate is stated; with that of" in told) == (name == "without")
         assert ("with strain-rate-hardening; the lines for two" in told) == (name == "with")
@@ -246,9 +245,8 @@ def test_a_mechanism_of_the_file_acts_on_the_parameters(tmp_path, prints):
 
 
 def test_heights_of_a_sweep_are_the_speeds_of_their_falls(tmp_path):
-    falls = BALL.split("support")[0].replace("impact_speed_m_s = 1.0", "drop_height_m = 1.0")
-    swept = falls + "[sweep]\ndrop_height_m = [0.05, 0.2]\n"
-    ball = read_ball(put(tmp_path / "ball.toml", swept))
+    falls = {"impact_speed_m_s": None, "drop_height_m": 1.0}
+    ball = read_ball(written(tmp_path, {"impact": falls, "sweep.drop_height_m": [0.05, 0.2]}))
     assert ball.speeds == pytest.approx([math.sqrt(0.981), math.sqrt(3.924)], rel=1e-12)
     assert not any("drop_height_m" in key for key in ball.unused)
 
@@ -256,3 +254,156 @@ def test_heights_of_a_sweep_are_the_speeds_of_their_falls(tmp_path):
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, errs):
     file = put(tmp_path / "rod.toml", template("rod"))
     assert 'strikers.rod.shape: a rod (allowed: "sphere")' in errs("export", "dem", file)
+
+
+STAINLESS = Material(E=193e9, nu=0.29, Sy=700e6, density=8000.0)
+ALLOY = Material(E=68.9e9, nu=0.33, Sy=276e6)
+DROPPED = Pair(STAINLESS, ALLOY, 3e-3)
+BALL_MASS = 4.0 / 3.0 * math.pi * DROPPED.R**3 * 8000.0
+CONTACT = simulators.BodiesMet(DROPPED.R, BALL_MASS, 0.3)
+SPEEDS = [0.1, 1.0, 10.0]
+
+
+@pytest.fixture(scope="module")
+def drops():
+    return substitutes(LAWS["fitted"], DROPPED, mass=BALL_MASS, speeds=SPEEDS)
+
+
+def test_a_dashpot_that_lets_go_returns_schwager_and_poeschels_formula():
+    """exp(-b/w (pi - arctan(2 b w/(w^2 - b^2)))) below the critical damping (Eq. 21)."""
+    for c in (0.1, 0.5, 1.0):
+        b = 0.5 * c
+        w = math.sqrt(1.0 - b * b)
+        turn = math.atan2(2.0 * b * w, w * w - b * b)
+        found = blow_on(DASHPOT, 1.0, c, 1.0, 1.0)
+        assert found.restitution == pytest.approx(math.exp(-b / w * (math.pi - turn)), rel=1e-6)
+
+
+def test_hunt_and_crossleys_ball_obeys_its_own_integral():
+    """What the damping takes: (e + 1) x = ln((1 + x)/(1 - e x)) with x = chi v, exactly."""
+    for x in (0.05, 0.5, 3.0):
+        e = blow_on(HUNT, 1.0, x, 1.0, 1.0).restitution
+        assert (1.0 + e) * x == pytest.approx(math.log((1.0 + x) / (1.0 - e * x)), rel=1e-5)
+
+
+def test_each_program_gets_the_restitution_and_the_depth(drops):
+    for row in drops:
+        for law in (DASHPOT, HUNT):
+            s = row.named(law.name)
+            assert s.blow.restitution == pytest.approx(row.law.restitution, abs=1e-4)
+            assert s.blow.depth == pytest.approx(row.law.depth, rel=1e-6)
+        assert damping_for(DASHPOT, row.law.restitution) < 2.0
+
+
+def printed(text):
+    found = re.findall(r"v = (\S+) m/s: restitution ([-.\d]+)(?:, of two balls ([-.\d]+))?", text)
+    return {float(v): [float(e) for e in es if e] for v, *es in found}
+
+
+def dropped(drops, files, command, folder):
+    """What a program prints of a drop at each speed is the restitution of its row."""
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    assert printed(ended.stdout) == {
+        v: [pytest.approx(r.law.restitution, rel=1e-3)] for v, r in zip(SPEEDS, drops, strict=True)
+    }
+
+
+def test_mujoco_drops_what_was_written(drops, tmp_path):
+    pytest.importorskip("mujoco")
+    files = simulators.mujoco_files(drops, CONTACT)
+    dropped(drops, files, [sys.executable, "mujoco_drop.py"], tmp_path)
+
+
+def test_yade_drops_what_was_written(drops, tmp_path):
+    yade = shutil.which("yade") or pytest.skip("yade is not installed")
+    files = {"yade_drop.py": simulators.yade_script(drops, CONTACT)}
+    dropped(drops, files, [yade, "-n", "-x", "yade_drop.py"], tmp_path)
+
+
+def test_lammps_drops_what_was_written(drops, tmp_path):
+    """On the flat and of two balls; of two spheres from either side, one held."""
+    lammps = pytest.importorskip("lammps")
+    pair, half = two_balls(DROPPED, BALL_MASS)
+    two = substitutes(LAWS["fitted"], pair, mass=half, speeds=SPEEDS)
+    held = StruckSphere(radius=4.0 * DROPPED.R)
+    free = replace(held, mass=9 * BALL_MASS)
+    inputs = {
+        "flat": (lammps_lines(drops, DROPPED, mass=BALL_MASS, friction=0.3, of_balls=two), two),
+        "held": (lammps_lines(drops, DROPPED, mass=BALL_MASS, second=held), ()),
+        "free": (lammps_lines(drops, DROPPED, mass=BALL_MASS, second=free), ()),
+    }
+    for name, (text, others) in inputs.items():
+        file, log = tmp_path / name, tmp_path / f"{name}.log"
+        file.write_text(text)
+        try:
+            solver = lammps.lammps(cmdargs=["-screen", "none", "-log", str(log)])
+        except OSError as error:
+            pytest.skip(str(error))
+        solver.file(str(file))
+        solver.close()
+        both = zip(drops, others or drops, strict=True)
+        wanted = [[a.law.restitution, b.law.restitution][: 1 + bool(others)] for a, b in both]
+        found = printed(log.read_text())
+        assert list(found.values()) == [pytest.approx(e, abs=2e-4) for e in wanted], name
+
+
+def test_drake_returns_what_the_table_says(drops):
+    pytest.importorskip("pydrake")
+    from pydrake.geometry import AddContactMaterial, HalfSpace, ProximityProperties, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
+    from pydrake.multibody.tree import SpatialInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    row = drops[1]
+    s = row.named(HUNT.name)
+    line = simulators.drake_lines([row], CONTACT).splitlines()[-1]
+    props = ProximityProperties()
+    eval(line, {"AddContactMaterial": AddContactMaterial, "props": props,
+                "CoulombFriction": CoulombFriction})  # fmt: skip
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
+    ball = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(BALL_MASS, DROPPED.R))
+    plant.RegisterCollisionGeometry(ball, RigidTransform(), Sphere(DROPPED.R), "ball", props)
+    floor = plant.world_body()
+    plant.RegisterCollisionGeometry(floor, RigidTransform(), HalfSpace(), "floor", props)
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+    plant.Finalize()
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    plant.SetFreeBodyPose(context, ball, RigidTransform([0.0, 0.0, DROPPED.R * (1.0 + 1e-9)]))
+    velocity = np.zeros(6)
+    velocity[5] = -row.law.speed
+    plant.SetVelocities(context, velocity)
+    integrator = simulator.get_mutable_integrator()
+    integrator.request_initial_step_size_target(s.blow.time / 500)
+    integrator.set_maximum_step_size(s.blow.time / 500)
+    simulator.AdvanceTo(1.5 * s.blow.time)
+    back = plant.GetVelocities(context)[5] / row.law.speed
+    assert back == pytest.approx(row.law.restitution, rel=0.01)
+
+
+def test_yades_plastic_limit_lies_at_the_depth_of_the_blow(drops):
+    """Luding (2008), Eq. 7, with the harmonic mean of two like radii."""
+    row_of_five = rf"^    \({', '.join([r'([-+.e0-9]+)'] * 5)}\),"
+    found = re.findall(row_of_five, simulators.yade_script(drops, CONTACT), re.MULTILINE)
+    for row, numbers in zip(drops, found, strict=True):
+        _, k1, k2, phi, _ = map(float, numbers)
+        assert phi * DROPPED.R * k2 / (k2 - k1) == pytest.approx(row.law.depth, rel=1e-4)
+        assert math.sqrt(k1 / k2) == pytest.approx(row.law.restitution, rel=1e-5)
+
+
+def test_mujocos_model_has_a_class_for_each_speed(drops):
+    tree = ET.fromstring(simulators.mujoco_files(drops, CONTACT)["mujoco.xml"])
+    assert [one.get("class") for one in tree.iter("default")] == [None, "v0.1", "v1", "v10"]
+
+
+def test_the_formula_holds_as_far_as_it_says():
+    found = simulators.formula_of(LAWS["fitted"], DROPPED, mass=BALL_MASS, speeds=SPEEDS)
+    (row,) = substitutes(LAWS["fitted"], DROPPED, mass=BALL_MASS, speeds=[2.5])
+    assert found(2.5) == pytest.approx(row.law.restitution, abs=1.5 * found.missed)
+    assert found.missed < 0.015

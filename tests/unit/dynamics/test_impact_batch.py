@@ -15,10 +15,9 @@ from dentscope.dynamics.files.setup import setup_of
 from dentscope.dynamics.files.sweep import swept_scenes
 from dentscope.dynamics.report.band import swept_stds
 from dentscope.models import LAWS
-from made_files import rows_of
+from made_files import changed, rows_of
 from made_scenes import ROD, STEEL, on_iron
 
-BALL = Striker(mass=0.004, tip_radius=0.005)
 OWN = {"permanent_depth_m": "residual_flat_m"}
 SEEN = (
     "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", "rebound_spin_rad_s",
@@ -78,7 +77,7 @@ def test_friction_and_mass_run_through_their_values() -> None:
 
 def test_what_the_work_cannot_settle_is_stepped() -> None:
     # at 4 mm/s gravity does most of the work of this contact
-    found = impacts(scene(BALL), speeds=[1e-3, 1.0], settings=Settings())
+    found = impacts(scene(Striker(0.004, 0.005)), speeds=[1e-3, 1.0], settings=Settings())
     assert found["route"].tolist() == ["steps", "work"]
     assert np.isfinite(found["restitution"]).all()
 
@@ -87,6 +86,8 @@ def test_columns_have_the_names_of_trials_and_go_to_files(tmp_path: Path) -> Non
     found = impacts(scene(), speeds=[0.5, 1.0])
     # these are read with a microscope or from a press, and no simulated impact has them
     others = {"dent_diameter_m", "press_depth_m", "recovered_depth_m"}
+    with pytest.raises(InputError, match="no column 'e'"):
+        found["e"]
     in_trials = [o.column for o in OBSERVABLES.values() if o.in_trials and o.column not in others]
     assert others.isdisjoint(found.columns)
     assert [name for name in found.columns if name in in_trials] == in_trials
@@ -118,8 +119,6 @@ def test_mistakes_are_one_line(given, message: str) -> None:
     with pytest.raises(InputError) as caught:
         impacts(scene(), **given)
     assert message in str(caught.value)
-    with pytest.raises(InputError, match="no column 'e'"):
-        impacts(scene(), speeds=1.0)["e"]
 
 
 def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) -> None:
@@ -140,10 +139,12 @@ def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) ->
 
 
 BODY = {"E_Pa": 2.0e11, "nu": 0.3}
+BALL = {**BODY, "Sy_Pa": 1.7e9, "density_kg_m3": 7800, "tip_radius_m": 0.005, "shape": "sphere"}
+FREE = {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.03}
 STRIKERS = {
-    "ball": {"shape": "sphere"},
-    "rod": {"shape": "rod", "radius_m": 0.004, "length_m": 0.2, "mass_kg": 0.05},
-    "two": {"shape": "sphere"},
+    "ball": {},
+    "rod": {"strikers.one": {"shape": "rod", "radius_m": 0.004, "length_m": 0.2, "mass_kg": 0.05}},
+    "two": {"target": FREE},  # the scene is of their relative motion, without gravity
 }
 ARRIVALS = (
     {"impact_speed_m_s": 1.0},
@@ -168,18 +169,13 @@ OTHER = {"impact_speed_m_s": "drop_height_m", "drop_height_m": "impact_speed_m_s
 
 
 def _set_up(striker, impact, sweep=None):
-    hard = {**BODY, "Sy_Pa": 1.7e9, "density_kg_m3": 7800, "tip_radius_m": 0.005}
     content = {
         "target": {**BODY, "Sy_Pa": 3.05e8}, "friction": {"coefficient": 0.2},
-        "strikers": {"one": {**hard, **STRIKERS[striker]}},
+        "strikers": {"one": BALL}, "impact": {k: v for k, v in impact.items() if k != "mass_kg"},
+        "sweep": {k: [v] for k, v in (sweep or {}).items()},
     }  # fmt: skip
-    if striker == "two":  # both free: the scene is of their relative motion, without gravity
-        content["target"] |= {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.03}
-    if "mass_kg" in impact:
-        content["strikers"]["one"]["mass_kg"] = impact["mass_kg"]
-    impact = {k: v for k, v in impact.items() if k != "mass_kg"}
-    swept = {k: [v] for k, v in (sweep or {}).items()}
-    return setup_of({**content, "impact": impact, "sweep": swept}, source="one.toml")
+    heavy = {"strikers.one.mass_kg": impact["mass_kg"]} if "mass_kg" in impact else {}
+    return setup_of(changed(content, {**STRIKERS[striker], **heavy}), source="one.toml")
 
 
 @pytest.mark.parametrize(("striker", "stated", "swept"), CASES)
@@ -220,17 +216,10 @@ def test_any_number_of_the_file_is_swept_by_its_key():
     assert stds[6:] == pytest.approx(
         swept_stds(alone, LAWS["fitted"], alone.swept(LAWS["fitted"]))["restitution"], rel=1e-12
     )
+    many = {"from": 0, "count": 9999}
+    swept = {"target.nu": {**many, "to": 0.4}, "friction": {**many, "to": 1}}
     with pytest.raises(InputError, match="up to 10000000"):
-        setup_of(
-            content
-            | {
-                "sweep": {
-                    "target.nu": {"from": 0, "to": 0.4, "count": 9999},
-                    "friction": {"from": 0, "to": 1, "count": 9999},
-                }
-            },
-            source="",
-        )
+        setup_of(content | {"sweep": swept}, source="")
 
 
 def test_a_swept_mass_carries_modes_of_its_own():

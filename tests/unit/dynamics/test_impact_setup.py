@@ -5,57 +5,48 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import tomlkit
 from dentscope.cli import run
 from dentscope.core import InputError, InputErrors
 from dentscope.core.inputs.templates import INVERSE
-from dentscope.dynamics import Impact
 from dentscope.dynamics.files.blow import blow_of
 from dentscope.dynamics.files.inverse_file import read_inverse
-from dentscope.dynamics.files.setup import DEFAULT_LAWS, read_setup, setup_of
+from dentscope.dynamics.files.setup import DEFAULT_LAWS, read_setup
 from dentscope.dynamics.inverse import MeasuredScar, alpha, infer, mobility
 from dentscope.models import LAWS, law_named
 from dentscope.models.published.hertz import HERTZ
 from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
 from made_blows import BALL, blow, setup
-from made_files import rows_of
+from made_files import changed, put, rows_of
 
-SETUP = """
-name = "rod"
-[target]
-shape = "flat"
-E_Pa = { value = 2.0e11, std = 4e9 }
-nu = 0.3
-Sy_Pa = 305e6
-density_kg_m3 = 7870
-thickness_m = 0.03
-[strikers.rod]
-shape = "rod"
-tip_radius_m = 0.0088
-radius_m = 0.0088
-length_m = 0.3048
-mass_kg = 0.4607
-E_Pa = 200e9
-nu = 0.3
-Sy_Pa = 760e6
-density_kg_m3 = 7800
-[friction]
-coefficient = 0.13
-[impact]
-angle_deg = 45
-impact_speed_m_s = 1.0
-laws = ["hertz", "jackson-green"]
-"""
+STEEL = {"E_Pa": 2e11, "nu": 0.3, "Sy_Pa": 760e6, "density_kg_m3": 7800}
+ROD = {
+    "name": "rod",
+    "target": {"shape": "flat", "E_Pa": {"value": 2.0e11, "std": 4e9}, "nu": 0.3, "Sy_Pa": 305e6,
+               "density_kg_m3": 7870, "thickness_m": 0.03},
+    "strikers": {"rod": {**STEEL, "shape": "rod", "tip_radius_m": 0.0088, "radius_m": 0.0088,
+                         "length_m": 0.3048, "mass_kg": 0.4607}},
+    "friction": {"coefficient": 0.13},
+    "impact": {"angle_deg": 45, "impact_speed_m_s": 1.0, "laws": ["hertz", "jackson-green"]},
+}  # fmt: skip
+METAL = {"E_Pa": 2.05e11, "nu": 0.3, "density_kg_m3": 7860}
+PEEN = {
+    "gravity_m_s2": 0, "target": METAL,
+    "strikers": {"ball": {**METAL, "shape": "sphere", "tip_radius_m": 2.9e-4, "Sy_Pa": 2.0e9}},
+    "impact": {"impact_speed_m_s": 50, "laws": ["fitted"]},
+}  # fmt: skip
 
 
-def write(path: Path, text: str) -> Path:
-    file = path / "setup.toml"
-    file.write_text(text)
-    return file
+def write(path, content, changes):
+    return put(path / "setup.toml", tomlkit.dumps(changed(content, changes)))
+
+
+def read(*given):
+    return read_setup(write(*given))
 
 
 def test_keys_reach_the_scene(tmp_path: Path) -> None:
-    text = SETUP.replace("angle_deg", 'support = "plate"\nmodes = 4\nangle_deg')
-    scene = read_setup(write(tmp_path, text)).scene(HERTZ)
+    scene = read(tmp_path, ROD, {"impact": {"support": "plate", "modes": 4}}).scene(HERTZ)
     assert scene.pair.flat.E == 2.0e11
     assert scene.striker.inertia == pytest.approx(0.4607 * (0.3048**2 / 12 + 0.0088**2 / 4))
     assert scene.approach.angle == pytest.approx(math.pi / 4)
@@ -66,105 +57,72 @@ def test_keys_reach_the_scene(tmp_path: Path) -> None:
 
 
 def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
-    text = (
-        SETUP.replace('shape = "rod"', 'shape = "sphere"')
-        .replace("impact_speed_m_s = 1.0", "drop_height_m = 0.2")
-        .replace("length_m = 0.3048\n", "")
-    )
-    text = text.replace("angle_deg = 45", "angle_deg = 30")
-    approach = read_setup(write(tmp_path, text)).scene(HERTZ).approach
+    fall = {"angle_deg": 30, "impact_speed_m_s": None, "drop_height_m": 0.2}
+    ball = {"strikers.rod": {"shape": "sphere", "length_m": None}, "impact": fall}
+    approach = read(tmp_path, ROD, ball).scene(HERTZ).approach
     speed = math.sqrt(2 * 9.81 * 0.2)
     assert approach.speed == pytest.approx(0.5 * speed)
     assert approach.tangential == pytest.approx(-speed * math.cos(math.pi / 6))
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line"),
+    ("changes", "line"),
     [
-        ("angle_deg = 45", "angle_deg = 95", "impact.angle_deg: 95"),
-        ("angle_deg = 45", "angel_deg = 45", "impact.angel_deg: unknown key"),
-        ("impact_speed_m_s = 1.0", "", "impact.impact_speed_m_s: missing (allowed: this or"),
-        (
-            "impact_speed_m_s = 1.0",
-            "impact_speed_m_s = 1\ndrop_height_m = 1",
-            "given beside impact.drop_height_m",
-        ),
-        ("[impact]", "[mechanisms]\nsqueeze-film = true\n[impact]", "environment.viscosity_Pa_s)"),
-        (SETUP, "radius_m = 1\n[sphere]\n[flat]\n", "setup.toml: a CASE.toml of `dentscope case`"),
-        ("angle_deg = 45", 'striker = "ball"', "impact.striker: no striker 'ball'"),
-        ("angle_deg = 45", 'support = "sprung"', "target.support_mass_kg: missing"),
-        ("angle_deg = 45", "modes = 100", "impact.modes: 100"),
-        (
-            "[impact]",
-            "[environment]\nviscosity_Pa_s = 0\n[impact]",
-            "environment.viscosity_Pa_s: 0 (allowed: a number above 0)",
-        ),
-        ('["hertz", "jackson-green"]', '"hertz"', "impact.laws: 'hertz' (allowed: a list"),
+        ({"impact.angle_deg": 95}, "impact.angle_deg: 95"),
+        ({"impact.angel_deg": 45}, "impact.angel_deg: unknown key"),
+        ({"impact.impact_speed_m_s": None}, "impact.impact_speed_m_s: missing (allowed: this or"),
+        ({"impact.drop_height_m": 1}, "given beside impact.drop_height_m"),
+        ({"mechanisms.squeeze-film": True}, "environment.viscosity_Pa_s)"),
+        ({**dict.fromkeys(ROD), "radius_m": 1, "sphere": {}, "flat": {}},
+         "setup.toml: a CASE.toml of `dentscope case`"),
+        ({"impact.striker": "ball"}, "impact.striker: no striker 'ball'"),
+        ({"impact.support": "sprung"}, "target.support_mass_kg: missing"),
+        ({"impact.modes": 100}, "impact.modes: 100"),
+        ({"environment.viscosity_Pa_s": 0},
+         "environment.viscosity_Pa_s: 0 (allowed: a number above 0)"),
+        ({"impact.laws": "hertz"}, "impact.laws: 'hertz' (allowed: a list"),
     ],
-)
-def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str) -> None:
+)  # fmt: skip
+def test_each_mistake_is_one_line(tmp_path: Path, changes, line: str) -> None:
     with pytest.raises(InputErrors) as caught:
-        read_setup(write(tmp_path, SETUP.replace(old, new, 1)))
+        read(tmp_path, ROD, changes)
     assert line in str(caught.value)
-    assert all(row.count("\n") == 0 for row in str(caught.value).splitlines())
+    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_bodies_that_cannot_be_simulated_are_one_line_with_the_file(tmp_path: Path) -> None:
-    steel = "E_Pa = 200e9\nnu = 0.3\nSy_Pa = 760e6\n"
-    flat = "E_Pa = { value = 2.0e11, std = 4e9 }\nnu = 0.3\nSy_Pa = 305e6\n"
-    named = SETUP.replace(steel, "material = 'Stahl'\n")
-    rigid = SETUP.replace(steel, "rigid = true\n").replace(flat, "rigid = true\n")
-    head, _, rest = SETUP.partition("[strikers.rod]")
-    empty = f"{head}[strikers]\n{rest[rest.index('[') :]}"
-    for text, line in (
-        (empty, "strikers: {} (allowed: 1 or more, each strikers.NAME)"),
-        (named, "strikers.rod.E_Pa: missing (allowed: a number (or rigid = true), or a material of "
+    none = {"E_Pa": None, "nu": None, "Sy_Pa": None}
+    for changes, line in (
+        ({"strikers.rod": None}, "strikers: {} (allowed: 1 or more, each strikers.NAME)"),
+        ({"strikers.rod": {**none, "material": "Stahl"}},
+         "strikers.rod.E_Pa: missing (allowed: a number (or rigid = true), or a material of "
          "`dentscope materials`, which 'Stahl' is not)"),
-        (rigid, "target.rigid: given beside a rigid striker"),
+        ({"strikers.rod": {**none, "rigid": True}, "target": {**none, "rigid": True}},
+         "target.rigid: given beside a rigid striker"),
     ):  # fmt: skip
         with pytest.raises(InputError) as caught:
-            read_setup(write(tmp_path, text)).scene(law_named("hertz"))
+            read(tmp_path, ROD, changes).scene(law_named("hertz"))
         assert f"setup.toml: {line}" in str(caught.value)
 
 
-PEEN = """
-gravity_m_s2 = 0
-[target]
-E_Pa = 2.05e11
-nu = 0.3
-STRENGTH
-density_kg_m3 = 7860
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.00029
-E_Pa = 2.05e11
-nu = 0.3
-Sy_Pa = 2.0e9
-density_kg_m3 = 7860
-[impact]
-impact_speed_m_s = 50
-laws = ["fitted"]
-"""
-
-
 def test_a_ball_is_told_to_be_a_sphere_and_nothing_else(tmp_path: Path) -> None:
-    text = PEEN.replace("STRENGTH", "").replace('"sphere"', '"ball"')
+    ball = {"shape": "ball", "tip_radius_m": None, "radius_m": 2.9e-4}
     with pytest.raises(InputErrors) as caught:
-        read_setup(write(tmp_path, text.replace("tip_radius_m", "radius_m")))
+        read(tmp_path, PEEN, {"strikers.ball": ball})
     told = "strikers.ball.shape: 'ball' (allowed: 'rod' or 'sphere'; a ball is a sphere)"
     assert [str(e).endswith(told) for e in caught.value.errors] == [True]
 
 
-def impact_of(tmp_path: Path, text: str) -> Impact:
-    setup = read_setup(write(tmp_path, text))
-    return blow_of(setup, [law_named(name) for name in setup.laws])[setup.laws[0]]
+def first(setup):
+    """The blow by the first of its laws."""
+    return blow_of(setup, [law_named(setup.laws[0])])[setup.laws[0]]
 
 
-def test_a_hardness_gives_the_strength_where_none_is_stated(tmp_path: Path) -> None:
+def test_a_hardness_gives_the_strength_where_none_is_stated() -> None:
     """Kirk, The Shot Peener (2004): a dent of 199 um at 300 HB, 0.58 mm and 50 m/s."""
     found, stated = (
-        impact_of(tmp_path, PEEN.replace("STRENGTH", line))
-        for line in ("hardness_Pa = 2.942e9", "Sy_Pa = 1.0507142857e9")
+        first(setup(changed(PEEN, {"target": strength})))
+        for strength in ({"hardness_Pa": 2.942e9}, {"Sy_Pa": 1.0507142857e9})
     )
     assert found.restitution == pytest.approx(stated.restitution, rel=1e-9)
     assert found.restitution == pytest.approx(0.4764, abs=0.001)
@@ -172,38 +130,12 @@ def test_a_hardness_gives_the_strength_where_none_is_stated(tmp_path: Path) -> N
     assert found.scar_width_m == pytest.approx(199e-6, rel=0.1)
 
 
-def changed(changes: dict[str, object]) -> dict[str, object]:
-    content = tomllib.loads(PEEN.replace("STRENGTH", ""))
-    for key, value in changes.items():
-        *path, last = key.split(".")
-        table = content
-        for part in path:
-            table = table.setdefault(part, {})
-        table.pop(last, None)
-        if value is not None:
-            table[last] = value
-    return content
-
-
-def answer(changes: dict[str, object]) -> list[float]:
-    setup = setup_of(changed(changes), source="peen.toml")
-    found = blow_of(setup, [law_named(name) for name in setup.laws])
-    return [found[name].restitution for name in setup.laws]
-
-
-def by_hardening(body: str = "target", strength: float = 3e8, **law: object) -> float:
-    changes = {f"{body}.Sy_Pa": strength, "impact.laws": ["hardening"], "impact.angle_deg": 90.0}
-    if body != "target":
-        changes["target.Sy_Pa"] = None
-    if law:
-        changes[f"{body}.hardening"] = law
-    return answer(changes)[0]
-
-
 @pytest.mark.parametrize("body", ["target", "strikers.ball"])
 def test_what_hardens_more_returns_more(body: str) -> None:
-    laws = [{}, *({"law": "ludwik", "K_Pa": k, "n": 0.4} for k in (2e8, 6e8, 2e9))]
-    e = [by_hardening(body, **law) for law in laws]
+    laws = [{"law": "ludwik", "K_Pa": k, "n": 0.4} for k in (2e8, 6e8, 2e9)]
+    metals = [{"Sy_Pa": 3e8}, *({"Sy_Pa": 3e8, "hardening": law} for law in laws)]
+    blow = {"impact.laws": ["hardening"], "impact.angle_deg": 90.0}
+    e = [first(setup(changed(PEEN, {body: metal, **blow}))).restitution for metal in metals]
     assert e == sorted(e)
     assert e[-1] > 1.2 * e[0]
 
@@ -229,42 +161,38 @@ def test_hardening_that_cannot_be_taken_is_refused_with_a_way(changes, words) ->
     if "impact.laws" not in changes:
         base["impact.laws"] = ["hardening"]
     with pytest.raises(InputError, match=words):
-        answer(base | changes)
+        first(setup(changed(PEEN, base | changes)))
 
 
 def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
     (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.01,3e8\n")
-    base = PEEN.replace('laws = ["fitted"]\n', "")
-    ours = impact_of(tmp_path, base.replace("STRENGTH", "Sy_Pa = 3e8") + 'laws = ["fitted"]\n')
-    flat = base.replace("STRENGTH", 'flow_curve = "flow.csv"')
-    setup = read_setup(write(tmp_path, flat))
-    assert setup.laws == ("hardening", *DEFAULT_LAWS)
-    checks = blow_of(setup, [law_named("hardening")]).checks()
-    assert any("the flat's flow curve ends at a strain of 0.01" in line for line in checks)
+    ours = first(setup(changed(PEEN, {"target.Sy_Pa": 3e8})))
+    flat = {"target.flow_curve": "flow.csv", "impact.laws": None}
+    curved = read(tmp_path, PEEN, flat)
+    assert curved.laws == ("hardening", *DEFAULT_LAWS)
+    level = blow_of(curved, [law_named("hardening")])
+    assert any("the flat's flow curve ends at a strain of 0.01" in line for line in level.checks())
     # a curve that does not rise is perfect plasticity
-    assert impact_of(tmp_path, flat).restitution == pytest.approx(ours.restitution, rel=2e-3)
-    hardens = base.replace(
-        "STRENGTH", 'Sy_Pa = 3e8\nhardening = { law = "ludwik", K_Pa = 4e8, n = 0.3 }'
-    )
-    dent = impact_of(tmp_path, hardens).residual_flat_m
-    assert dent < 0.93 * ours.residual_flat_m
+    assert level["hardening"].restitution == pytest.approx(ours.restitution, rel=2e-3)
+    hardens = {"Sy_Pa": 3e8, "hardening": {"law": "ludwik", "K_Pa": 4e8, "n": 0.3}}
+    harder = setup(changed(PEEN, {"target": hardens, "impact.laws": None}))
+    assert first(harder).residual_flat_m < 0.93 * ours.residual_flat_m
     with pytest.raises(InputError, match="none of fitted follows it"):
-        impact_of(tmp_path, hardens + 'laws = ["fitted"]\n')
+        first(setup(changed(PEEN, {"target": hardens})))
     # a stated strength is what the piece has at 0.2 %; one at which the curve begins leaves it
     (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.1,5e8\n")
     strengths = [
-        read_setup(write(tmp_path, base.replace("STRENGTH", f"{line}flow_curve = 'flow.csv'")))
-        .scene(HERTZ).pair.flat.Sy
-        for line in ("", "Sy_Pa = 3e8\n", "Sy_Pa = 6.08e8\n")
-    ]  # fmt: skip
+        read(tmp_path, PEEN, {**flat, "target.Sy_Pa": Sy}).scene(HERTZ).pair.flat.Sy
+        for Sy in (None, 3e8, 6.08e8)
+    ]
     assert strengths == pytest.approx([3e8, 3e8, 6e8], rel=1e-6)
     (tmp_path / "flow.csv").unlink()
     with pytest.raises(InputError, match=r"target.flow_curve: no such file 'flow.csv'"):
-        read_setup(write(tmp_path, flat)).scene(HERTZ)
+        read(tmp_path, PEEN, flat).scene(HERTZ)
 
 
 def test_command_line_from_file(tmp_path, prints):
-    file = write(tmp_path, SETUP + "[sweep]\nimpact_speed_m_s = [0.5, 2]\n")
+    file = write(tmp_path, ROD, {"sweep.impact_speed_m_s": [0.5, 2]})
     assert "kinetic restitution" in prints("impact", file, "--out", tmp_path / "out")
     for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
         assert (tmp_path / "out" / name).stat().st_size > 100
@@ -276,9 +204,8 @@ def test_command_line_from_file(tmp_path, prints):
 
 
 def test_a_budget_that_runs_out_ends_with_code_3(tmp_path, capsys):
-    text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
-    text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
-    assert run(["impact", str(write(tmp_path, text)), "--out", str(tmp_path)]) == 3
+    file = write(tmp_path, ROD, {"impact": {"modes": 2, "max_contacts": 1, "laws": ["hertz"]}})
+    assert run(["impact", str(file), "--out", str(tmp_path)]) == 3
     told = capsys.readouterr()
     assert "1 of 1 impacts (hertz): step-limit" in told.err
     assert "max_contacts" in told.err
@@ -335,17 +262,13 @@ def test_waves_asked_for_are_those_of_the_support_of_that_name():
 
 
 def test_a_sweep_takes_the_mechanism_at_each_speed_as_single_blows_do():
-    text = BALL + (
-        "[sweep]\nimpact_speed_m_s = [0.3, 3.0]\n"
-        "[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 0.4\nrate_exponent = 0.3\n"
-    )
-    found = setup(text).swept(LAW)
+    rate = {"strain-rate-hardening": {"rise_at_1000_per_s": 0.4, "rate_exponent": 0.3}}
+    ball = {**tomllib.loads(BALL), "mechanisms": rate}
+    found = setup(changed(ball, {"sweep.impact_speed_m_s": [0.3, 3.0]})).swept(LAW)
     for k, speed in enumerate((0.3, 3.0)):
-        alone = text.split("[sweep]")[0] + text.partition("3.0]\n")[2]
-        one = blow(alone.replace("impact_speed_m_s = 1.0", f"impact_speed_m_s = {speed}"))
-        assert found["restitution"][k] == pytest.approx(one["fitted"].restitution, rel=1e-4)
-        dent = one["fitted"].residual_flat_m
-        assert found["permanent_depth_m"][k] == pytest.approx(dent, rel=1e-4)
+        one = blow(changed(ball, {"impact.impact_speed_m_s": speed}))["fitted"]
+        assert found["restitution"][k] == pytest.approx(one.restitution, rel=1e-4)
+        assert found["permanent_depth_m"][k] == pytest.approx(one.residual_flat_m, rel=1e-4)
 
 
 def test_the_effect_is_that_against_the_blow_without_it():

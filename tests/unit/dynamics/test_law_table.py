@@ -6,18 +6,10 @@ import warnings
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.dynamics import (
-    CREEP,
-    Approach,
-    Press,
-    Settings,
-    Striker,
-    dent_radius,
-    pressed,
-    scene_of,
-    strike,
-)
+from dentscope.dynamics import Approach, Settings, Striker, scene_of, strike
 from dentscope.dynamics.force import factor
+from dentscope.dynamics.press import dent_radius, pressed
+from dentscope.dynamics.scene import CREEP, Press
 from dentscope.dynamics.tabulated.cells import cell_at, cells_of, column_in
 from dentscope.dynamics.tabulated.law_table import ERROR, tabulated
 from dentscope.models import LAWS

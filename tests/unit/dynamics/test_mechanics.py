@@ -17,6 +17,7 @@ from made_blows import ball_setup
 OF = {m.name: m for m in MECHANISMS}
 STEEL = {"E_Pa": 2.06e11, "nu": 0.3, "density_kg_m3": 7800.0}
 GLASS = {"E_Pa": 7.0e10, "nu": 0.22, "density_kg_m3": 2500.0}
+SOFT, HARD = {**STEEL, "Sy_Pa": 3e8}, {**STEEL, "Sy_Pa": 3e9}
 
 
 def setup(**given):
@@ -29,7 +30,9 @@ def struck(**given):
     return blow[one.laws[0]], blow
 
 
-def film(speed, *, drag=0.8, **more):
+def film(speed=0.0, *, stokes=0.0, drag=0.8, **more):
+    """A ball of 3 mm in oil; St = m v/(6 pi eta R^2)."""
+    speed = speed or stokes * 6.0 * math.pi * 0.1 * 3e-3**2 / (2600.0 * 4.0 * math.pi * 3e-3**3)
     oil = {"fluid": "oil", "viscosity_Pa_s": 0.1}
     table = {"squeeze-film": {"film_drag_Pa_s": drag, "film_exit_share": 0.0} if drag else True}
     return struck(target=GLASS, radius=3e-3, speed=speed, environment=oil, mechanisms=table, **more)
@@ -44,9 +47,8 @@ def test_a_film_takes_its_part_once():
 
 @pytest.mark.parametrize(("stokes", "touches"), [(7.9, False), (8.1, True)])
 def test_below_the_critical_stokes_number_nothing_comes_back(stokes, touches):
-    """St = m v/(6 pi eta R^2) against ln(h_0/h_1) = 8 (Davis, Serayssol and Hinch 1986)."""
-    mass = 7800.0 * 4.0 / 3.0 * math.pi * 3e-3**3
-    found, blow = film(stokes * 6.0 * math.pi * 0.1 * 3e-3**2 / mass)
+    """St against ln(h_0/h_1) = 8 (Davis, Serayssol and Hinch 1986)."""
+    found, blow = film(stokes=stokes)
     assert (found.restitution > 0.0, found.peak_force_N > 0.0) == (touches, touches)
     assert any("no touch" in line for line in blow.checks()) is not touches
     assert found.restitution == pytest.approx(max(1.0 - 8.0 / stokes, 0.0), abs=1e-6)
@@ -55,8 +57,7 @@ def test_below_the_critical_stokes_number_nothing_comes_back(stokes, touches):
 @pytest.mark.parametrize("stokes", [50.0, 152.0, 500.0])
 def test_a_liquid_that_is_only_named_is_all_around(stokes):
     """exp(-35/St) of the dry one (Legendre and others 2005, of Gondret's and Joseph's spheres)."""
-    mass = 7800.0 * 4.0 / 3.0 * math.pi * 3e-3**3
-    found, _ = film(stokes * 6.0 * math.pi * 0.1 * 3e-3**2 / mass, drag=0.0)
+    found, _ = film(stokes=stokes, drag=0.0)
     assert found.restitution == pytest.approx(1.0 - 20.0 / stokes, abs=1e-6)
     assert found.restitution == pytest.approx(math.exp(-35.0 / stokes), abs=0.11)
 
@@ -209,26 +210,23 @@ def test_a_spin_is_the_strikers_own(radius, mass, friction, spin):
     assert row["approach_spin_rad_s"][0] == pytest.approx(60.0)
 
 
-def pair_of(rng):
-    r = 10.0 ** rng.uniform(-3.3, -1.5, 2)
-    strengths = 10.0 ** rng.uniform(8.3, 9.5, 2)
-    one, two = (
-        {"radius": x, "Sy_Pa": s, **STEEL} for x, s in zip(r, strengths, strict=True)
-    )  # fmt: skip
-    return one, two, 10.0 ** rng.uniform(-0.5, 1.3)
-
-
 def told_from(one, other, speed):
-    own = {k: v for k, v in one.items() if k != "radius"}
-    mass = 7800.0 * 4.0 / 3.0 * math.pi * other["radius"] ** 3
-    target = {k: v for k, v in other.items() if k != "radius"}
-    target |= {"shape": "sphere", "radius_m": other["radius"], "mass_kg": mass}
-    return struck(target=target, ball=own, radius=one["radius"], law="fitted", speed=speed)
+    """The blow of a sphere of a radius and a strength on another."""
+    (radius, strength), (struck_radius, struck_strength) = one, other
+    target = {
+        **STEEL, "Sy_Pa": struck_strength, "shape": "sphere", "radius_m": struck_radius,
+        "mass_kg": 7800.0 * 4.0 / 3.0 * math.pi * struck_radius**3,
+    }  # fmt: skip
+    ball = {**STEEL, "Sy_Pa": strength}
+    return struck(target=target, ball=ball, radius=radius, law="fitted", speed=speed)
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_one_blow_of_two_spheres_is_the_same_from_either_side(seed):
-    one, two, speed = pair_of(np.random.default_rng(seed))
+    rng = np.random.default_rng(seed)
+    radii, strengths = 10.0 ** rng.uniform(-3.3, -1.5, 2), 10.0 ** rng.uniform(8.3, 9.5, 2)
+    one, two = zip(radii, strengths, strict=True)
+    speed = 10.0 ** rng.uniform(-0.5, 1.3)
     (a, _), (b, _) = told_from(one, two, speed), told_from(two, one, speed)
     for name in ("restitution", "peak_force_N", "peak_depth_m", "contact_time_s"):
         assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-6), name
@@ -237,7 +235,7 @@ def test_one_blow_of_two_spheres_is_the_same_from_either_side(seed):
 
 
 def test_what_is_told_of_two_spheres_is_the_same_from_either_side():
-    soft, hard = {"radius": 1e-3, "Sy_Pa": 3e8, **STEEL}, {"radius": 0.1, "Sy_Pa": 3e9, **STEEL}
+    soft, hard = (1e-3, 3e8), (0.1, 3e9)
     one, two = (
         [x for x in told_from(*both, 10.0)[1].checks() if "along the approach" not in x]
         for both in ((soft, hard), (hard, soft))
@@ -248,8 +246,7 @@ def test_what_is_told_of_two_spheres_is_the_same_from_either_side():
 
 def test_a_small_soft_sphere_is_the_laws_whichever_strikes():
     """Finite elements of the soft one on a flat of 3 GPa: e 0.3259, 135.6 N, 21.40 um left."""
-    soft = {"radius": 1e-3, "Sy_Pa": 3e8, **STEEL}
-    found, _ = told_from({"radius": 0.1, "Sy_Pa": 3e9, **STEEL}, soft, 10.0)
+    found, _ = told_from((0.1, 3e9), (1e-3, 3e8), 10.0)
     assert found.restitution == pytest.approx(0.3259, rel=0.01)
     assert found.peak_force_N == pytest.approx(135.6, rel=0.01)
     assert found.residual_flat_m == pytest.approx(21.40e-6, rel=0.01)
@@ -257,9 +254,8 @@ def test_a_small_soft_sphere_is_the_laws_whichever_strikes():
 
 def test_a_scar_is_as_wide_as_its_contact_at_any_scale():
     """The contact's circle is 29.27 um of 0.6 mm shot at 0.5 m/s, and ten times that of 6 mm."""
-    soft, hard = {**STEEL, "Sy_Pa": 3e8}, {**STEEL, "Sy_Pa": 3e9}
     for radius, width in ((3e-4, 29.27e-6), (3e-3, 292.7e-6)):
-        found, _ = struck(target=soft, ball=hard, radius=radius, law="fitted", speed=0.5)
+        found, _ = struck(target=SOFT, ball=HARD, radius=radius, law="fitted", speed=0.5)
         assert found.scar_width_m == found.scar_length_m == pytest.approx(width, rel=1e-3)
 
 
@@ -289,8 +285,8 @@ def test_a_strength_is_that_of_both_bodies_and_not_cut(soft, length, radius, fac
 @pytest.mark.parametrize(("kelvin", "ends"), [(250.0, True), (900.0, False), (1760.0, True)])
 def test_a_law_of_heat_ends_below_its_reference_and_at_melting(kelvin, ends):
     one = setup(
-        target={**STEEL, "Sy_Pa": 3e8, "cp_J_kgK": 470.0, "melting_K": 1790.0},
-        ball={**STEEL, "Sy_Pa": 3e9}, law="fitted", environment={"temperature_K": 293.0},
+        target={**SOFT, "cp_J_kgK": 470.0, "melting_K": 1790.0}, ball=HARD, law="fitted",
+        environment={"temperature_K": 293.0},
         impact={"temperature_K": kelvin}, mechanisms={"thermal-softening": True},
     )  # fmt: skip
     if not ends:
@@ -307,7 +303,7 @@ def test_a_low_exponent_softens_at_a_little_heat():
         "mechanisms": {"thermal-softening": {"softening_exponent": 0.4}},
     }  # fmt: skip
     flat = {**STEEL, "cp_J_kgK": 3e4, "melting_K": 1800.0}
-    at, left = {"law": "fitted", "ball": {**STEEL, "Sy_Pa": 3e9}}, 1.0 - (27.0 / 1507.0) ** 0.4
+    at, left = {"law": "fitted", "ball": HARD}, 1.0 - (27.0 / 1507.0) ** 0.4
     found, _ = struck(target={**flat, "Sy_Pa": 3e8}, **at, **warm)
     stated, _ = struck(target={**STEEL, "Sy_Pa": left * 3e8}, **at)
     assert found.restitution == pytest.approx(stated.restitution, rel=1e-2)
@@ -315,13 +311,12 @@ def test_a_low_exponent_softens_at_a_little_heat():
 
 def test_a_smooth_surface_is_not_rough():
     """Ra 0 is no roughness, not that of a ground surface; a sweep begins with it."""
-    both = {"law": "fitted", "ball": {**STEEL, "Sy_Pa": 3e9}}
-    flat, rough = {**STEEL, "Sy_Pa": 3e8}, {"mechanisms": {"roughness": True}}
+    both, rough = {"law": "fitted", "ball": HARD}, {"mechanisms": {"roughness": True}}
     with pytest.raises(InputError, match="smooth, as stated"):
-        struck(target=flat | {"Ra_m": 0.0}, **both, **rough)
-    swept = setup(target=flat | {"Ra_m": 0.0}, sweep={"target.Ra_m": [0.0, 1e-6]}, **both, **rough)
+        struck(target=SOFT | {"Ra_m": 0.0}, **both, **rough)
+    swept = setup(target=SOFT | {"Ra_m": 0.0}, sweep={"target.Ra_m": [0.0, 1e-6]}, **both, **rough)
     swept.check_laws([LAWS["fitted"]])
-    smooth, _ = struck(target=flat, **both)
+    smooth, _ = struck(target=SOFT, **both)
     first, second = swept.swept(LAWS["fitted"])["restitution"]
     assert first == pytest.approx(smooth.restitution, rel=1e-6)
     assert second < 0.99 * first
@@ -343,7 +338,7 @@ def test_a_ball_that_its_weight_holds_stays(speed):
 @pytest.mark.parametrize(("speed", "said"), [(150.0, False), (250.0, True)])
 def test_the_metals_inertia_is_told_of(speed, said):
     """7800 v^2/3e8 is 1 at 196 m/s; at 500 m/s 20 um of copper go through each other."""
-    _, blow = struck(target={**STEEL, "Sy_Pa": 3e8}, law="fitted", speed=speed)
+    _, blow = struck(target=SOFT, law="fitted", speed=speed)
     assert any("inertia" in line for line in blow.checks()) is said
     soft = {"E_Pa": 1.2e11, "nu": 0.34, "Sy_Pa": 3e8, "density_kg_m3": 8960.0}
     _, blow = struck(
@@ -362,7 +357,7 @@ def test_a_ball_that_a_free_block_of_its_mass_stops_has_given_it_its_speed():
 
 def test_the_smaller_of_two_spheres_is_the_one_that_is_gone_through():
     """A grain of 1 um that a ball of 5 mm flattens by 1.7 um; of equal balls the striker stops."""
-    grain = {**STEEL, "Sy_Pa": 3e8, "shape": "sphere", "radius_m": 1e-6, "mass_kg": 1e-9}
+    grain = {**SOFT, "shape": "sphere", "radius_m": 1e-6, "mass_kg": 1e-9}
     _, blow = struck(target=grain, law="fitted", speed=3.0)
     assert any("more than the radius" in line for line in blow.checks())
     like = {**STEEL, "shape": "sphere", "radius_m": 5e-3, "mass_kg": 4.0841e-3}
@@ -372,11 +367,9 @@ def test_the_smaller_of_two_spheres_is_the_one_that_is_gone_through():
 
 def test_a_ball_that_is_put_down_is_no_blow():
     """Its weight, 40 mN, presses 5 mm of steel in by 24 nm: 1e-9 m/s is lost in their round-off."""
-    soft = {**STEEL, "Sy_Pa": 3e8}
-    slow, fast = (
-        setup(target=soft, law="fitted", speed=v, gravity_m_s2=9.81) for v in (1e-9, 4e-6)
-    )
-    swept = setup(target=soft, law="fitted", gravity_m_s2=9.81, sweep={"impact_speed_m_s": [1e-9]})
+    blow = {"target": SOFT, "law": "fitted", "gravity_m_s2": 9.81}
+    slow, fast = (setup(speed=v, **blow) for v in (1e-9, 4e-6))
+    swept = setup(sweep={"impact_speed_m_s": [1e-9]}, **blow)
     for one in (slow, swept):
         with pytest.raises(InputError, match="no blow"):
             one.check_laws([LAWS["fitted"]])

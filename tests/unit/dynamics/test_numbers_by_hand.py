@@ -1,7 +1,6 @@
 """Tuned numbers of the impact stage where they act, in cases that are worked out by hand."""
 
 import math
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -21,10 +20,17 @@ from dentscope.dynamics.strength import strength_table
 from dentscope.dynamics.surface import Imprint, Spot, beside
 from dentscope.models import LAWS
 from made_blows import ball_setup
+from made_files import put
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9, density=7800.0)
 STEEL = Material(E=2e11, nu=0.3, Sy=4e8, density=7800.0)
 OF = {m.name: m for m in MECHANISMS}
+
+
+ROD = Scene(
+    LAWS["fitted"], Pair(HARD, STEEL, 5e-3), Striker(0.2, 5e-3, length=0.3, radius=5e-3),
+    Approach(1.0),
+)  # fmt: skip
 
 
 def scene(*, law="fitted", ball=HARD, flat=STEEL, radius=5e-3, mass=4e-3, speed=2.0, **more):
@@ -85,12 +91,8 @@ def test_the_work_of_a_table_is_two_fifths_of_hertzs_force_times_depth():
     assert table.peak(float(table.work[20])) == pytest.approx(table.depth[20], rel=1e-9)
 
 
-def imprint(at):
-    return Imprint(at, at, at - 1e-4, at + 1e-4, at, 1e-6, 1e-5, 1e-4, 0.5)
-
-
 def test_the_wall_of_a_crater_is_three_tenths_of_its_radius_wide_at_the_least():
-    steep = replace(imprint(0.0), first=-1e-5, last=1e-5)
+    steep = Imprint(0.0, 0.0, -1e-5, 1e-5, 0.0, 1e-6, 1e-5, 1e-4, 0.5)
     row = Spot(imprints=(steep,)).row()
     assert beside(row, 5, 2e-5) == pytest.approx((2e-5, 0.3e-4, 1.0))
 
@@ -98,9 +100,7 @@ def test_the_wall_of_a_crater_is_three_tenths_of_its_radius_wide_at_the_least():
 @pytest.mark.parametrize(("off", "own"), [(5e-4, True), (2e-3, False)])
 def test_a_strength_at_which_its_curve_begins_is_that_of_the_curve(tmp_path, off, own):
     """Beside another strength the curve is scaled to reach it at a plastic strain of 0.2 %."""
-    (tmp_path / "curve.csv").write_text(
-        "plastic_strain,true_stress_Pa\n0,3e8\n0.004,4e8\n0.1,5e8\n", encoding="utf-8"
-    )
+    put(tmp_path / "curve.csv", "plastic_strain,true_stress_Pa\n0,3e8\n0.004,4e8\n0.1,5e8\n")
     table = SimpleNamespace(flow_curve="curve.csv")
     metal = flowing(
         Material(E=2e11, nu=0.3, Sy=3e8 * (1.0 + off)), table, "target",
@@ -118,11 +118,7 @@ def test_a_rod_rings_in_six_lengthwise_modes_and_loses_a_thousandth():
 
 
 def test_a_leaning_rod_rings_in_nine_modes():
-    rod = Scene(
-        LAWS["fitted"], Pair(HARD, STEEL, 5e-3), Striker(0.2, 5e-3, length=0.3, radius=5e-3),
-        Approach(1.0, angle=1.0),
-    )  # fmt: skip
-    bent = OF["rod-flexural-vibration"].modes(rod.striker, HARD)
+    bent = OF["rod-flexural-vibration"].modes(ROD.striker, HARD)
     assert bent.frequencies == rod_modes(
         0.3, 5e-3, HARD, mass=0.2, count=9, loss_factor=bent.loss_factor
     ).frequencies  # fmt: skip
@@ -134,31 +130,28 @@ def test_a_rod_of_more_than_3000_radii_has_no_modes():
         rod_modes(31.0, 0.01, STEEL, mass=1.0, count=1)
 
 
-def _drag(*, density, height=False):
+def _drag(density):
     """What keeps drag from acting on a ball of 5 mm that strikes with 2 m/s."""
-    around = Surroundings(density=density, viscosity=1e-12, fluid="oil", from_height=height)
+    around = Surroundings(density=density, viscosity=1e-12, fluid="oil")
     return OF["air-drag"].applies([(scene(), around)])
 
 
 def test_drag_matters_from_a_2000th_of_a_speed_to_four_fifths():
     """Turbulent: the share taken goes as the density; the limits are met in its proportion."""
-    thin, thick = 1e-9, 1e-9
-    while "takes at most" in _drag(density=thin):
+    thin = 1e-9
+    while "takes at most" in _drag(thin):
         thin *= 1.1
-    said = _drag(density=thin / 1.1)
-    assert float(said.split("at most ")[1].split(" ")[0]) == pytest.approx(5e-4, rel=0.12)
+    assert float(_drag(thin / 1.1).split("at most ")[1].split(" ")[0]) == pytest.approx(
+        5e-4, rel=0.12
+    )
     thick = thin
-    while not _drag(density=thick):
+    while not _drag(thick):
         thick *= 1.1
-    assert int(_drag(density=thick).split("takes ")[1].split("%")[0]) in range(80, 88)
+    assert int(_drag(thick).split("takes ")[1].split("%")[0]) in range(80, 88)
 
 
 def test_an_upright_rod_leans_by_half_a_degree_to_five():
-    rod = Scene(
-        LAWS["fitted"], Pair(HARD, STEEL, 5e-3), Striker(0.2, 5e-3, length=0.3, radius=5e-3),
-        Approach(1.0),
-    )  # fmt: skip
-    [lean] = OF["tilt"].ranges([(rod, Surroundings())])
+    [lean] = OF["tilt"].ranges([(ROD, Surroundings())])
     assert (lean.low, lean.high) == (0.5, 5.0)
 
 

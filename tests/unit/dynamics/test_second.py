@@ -1,7 +1,6 @@
 """Two spheres: what the equivalent sphere on a flat must answer, and how far it holds."""
 
 import math
-import tomllib
 
 import numpy as np
 import pytest
@@ -13,31 +12,21 @@ from dentscope.dynamics.report.band import last_blow
 from dentscope.dynamics.report.beside import error_of
 from dentscope.models import LAWS
 from dentscope.models.turned import similar
-from made_blows import setup
+from made_blows import ball_setup
+from made_files import changed
 
 STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)
 HARD = Material(E=205e9, nu=0.3, density=7800.0)
 BALL = Striker(mass=4.084e-3, tip_radius=5e-3)
 
-STATED = """mass_kg = 0.004084070449666731
-E_Pa = 2.05e11
-nu = 0.3
-Sy_Pa = 6.0e8
-density_kg_m3 = 7800
-"""
-TWO = f"""
-gravity_m_s2 = 0
-[target]
-shape = "sphere"
-radius_m = 0.005
-{STATED}[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-{STATED}[impact]
-impact_speed_m_s = 1
-laws = ["fitted"]
-"""
-ON_FLAT = TWO.replace('shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n', "", 1)
+METAL = {"E_Pa": 2.05e11, "nu": 0.3, "Sy_Pa": 6.0e8, "density_kg_m3": 7800}
+TWIN = {**METAL, "shape": "sphere", "radius_m": 0.005, "mass_kg": 0.004084070449666731}
+
+
+def met(target=TWIN, *, Sy=6.0e8, **given):
+    """A ball of 5 mm that meets its twin, or another body, by the fitted law."""
+    ball = changed(METAL, {"Sy_Pa": Sy, "mass_kg": TWIN["mass_kg"]})
+    return ball_setup(target=target, ball=ball, **{"law": "fitted", **given})
 
 
 def scene(flat=STEEL, *, speed=1.0, law="fitted", angle=0.5 * math.pi, mu=0.0, spin=0.0):
@@ -62,12 +51,8 @@ def scene(flat=STEEL, *, speed=1.0, law="fitted", angle=0.5 * math.pi, mu=0.0, s
 )
 def test_elastic_spheres_from_a_file_are_hertzs(radius, mass, modulus, speed):
     """T, delta = (15 m v^2/(16 E' R^(1/2)))^(2/5), F = (4/3) E' R^(1/2) delta^(3/2), by hand."""
-    struck = f'shape = "sphere"\nradius_m = {radius}\n' + (f"mass_kg = {mass}\n" if mass else "")
-    text = TWO.replace('shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n',
-                       struck, 1)  # fmt: skip
-    text = text.replace("Sy_Pa = 6.0e8\n", "").replace("E_Pa = 2.05e11", f"E_Pa = {modulus}", 1)
-    text = text.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
-    found = strike(setup(text).scene(LAWS["hertz"]))
+    flat = {"radius_m": radius, "mass_kg": mass, "E_Pa": modulus, "Sy_Pa": None}
+    found = strike(met(changed(TWIN, flat), Sy=None, speed=speed).scene(LAWS["hertz"]))
     R = 1.0 / (1.0 / 5e-3 + 1.0 / radius)
     m = 1.0 / (1.0 / 0.004084070449666731 + (1.0 / mass if mass else 0.0))
     E = 1.0 / ((1.0 - 0.09) / 205e9 + (1.0 - 0.09) / modulus)
@@ -95,7 +80,7 @@ def test_momentum_and_energy_are_kept(mass):
 
 def test_a_sweep_has_the_strikers_own_mass_and_rebound():
     """Of two equal spheres the striker goes on with (1 - e) v/2."""
-    two = setup(TWO + "[sweep]\nimpact_speed_m_s = [0.5, 2.0]\n")
+    two = met(sweep={"impact_speed_m_s": [0.5, 2.0]})
     found = two.swept(LAWS["fitted"])
     assert found["mass_kg"] == pytest.approx(0.004084070449666731)
     on = 0.5 * (1.0 - found["restitution"]) * found["impact_speed_m_s"]
@@ -183,8 +168,7 @@ def test_two_balls_lose_more_than_one_on_a_flat():
     """Both by finite elements (quick): 0.427 and 0.470 at 10 m/s, between their unloadings."""
     for speed, low, high in ((1.0, 0.08, 0.12), (10.0, 0.075, 0.115)):
         two, one = (
-            strike(setup(x.replace("m_s = 1", f"m_s = {speed}")).scene(LAWS["fitted"])).restitution
-            for x in (TWO, ON_FLAT)
+            strike(met(x, speed=speed).scene(LAWS["fitted"])).restitution for x in (TWIN, METAL)
         )
         assert low < 1.0 - two / one < high
 
@@ -192,8 +176,7 @@ def test_two_balls_lose_more_than_one_on_a_flat():
 def test_equal_spheres_keep_equal_dents_and_unequal_ones_what_finite_elements_have():
     """The smaller's part at 0.02 and 0.05 R with R_2 = 2 R_1: 0.524 and 0.616 (E/300)."""
     for speed in (1.0, 10.0):
-        text = TWO.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
-        found = last_blow(setup(text), LAWS["fitted"])
+        found = last_blow(met(speed=speed), LAWS["fitted"])
         assert found.residual_flat_m == pytest.approx(found.residual_sphere_m, rel=1e-9) != 0.0
     metal = Material(E=200e9, nu=0.3, Sy=200e9 / 300.0)
     R = 1e-3 / 1.5
@@ -215,31 +198,32 @@ def test_below_first_yield_there_is_no_scar():
 
 def test_rough_spheres_that_slide_are_the_same_from_either_side():
     """Asperities stay flat in either body, and the smaller one takes its dent along."""
-    content = tomllib.loads(TWO) | {"mechanisms": {"roughness": {"roughness_m": 2e-6}}}
-    content["impact"] |= {"impact_speed_m_s": 10.0, "angle_deg": 30.0}
-    content["target"] |= {"radius_m": 0.004, "Sy_Pa": 4e8}
-    other = {**content, "target": dict(content["target"])}
-    swapped = {**content["strikers"]["ball"], "tip_radius_m": 0.004, "Sy_Pa": 4e8}
-    other["target"] |= {"radius_m": 0.005, "Sy_Pa": 6e8}
-    other["strikers"] = {"ball": swapped}
-    here, there = (last_blow(setup(one), LAWS["fitted"]) for one in (content, other))
+    rough = {"roughness": {"roughness_m": 2e-6}}
+    small, large = (0.004, 4e8), (0.005, 6e8)
+    here, there = (
+        last_blow(
+            met({**TWIN, "radius_m": R, "Sy_Pa": strong}, radius=r, Sy=Sy, speed=10.0,
+                mechanisms=rough, impact={"angle_deg": 30.0}),
+            LAWS["fitted"],
+        )
+        for (R, strong), (r, Sy) in ((small, large), (large, small))
+    )  # fmt: skip
     assert there.restitution == pytest.approx(here.restitution, rel=1e-6)
     assert there.residual_flat_m == pytest.approx(here.residual_sphere_m, rel=1e-6)
     assert there.residual_sphere_m == pytest.approx(here.residual_flat_m, rel=1e-6)
 
 
 def test_what_only_one_shape_has_is_refused_for_the_other():
-    rigid = 'laws = ["fitted"]\nsupport = "half-space"\n'
-    for text, key in (
-        (TWO.replace("radius_m = 0.005\n", "", 1), "target.radius_m"),
-        (ON_FLAT.replace("[target]", "[target]\nradius_m = 0.01"), "target.radius_m"),
-        (ON_FLAT.replace("[target]", "[target]\nmass_kg = 0.01"), "target.mass_kg"),
-        (TWO.replace("[target]", "[target]\nthickness_m = 0.01"), "target.thickness_m"),
-        (TWO.replace('laws = ["fitted"]\n', rigid), "impact.support"),
-        (TWO.replace("radius_m = 0.005\n", "radius_m = -0.004\n", 1), "target.radius_m"),
+    for target, impact, key in (
+        (changed(TWIN, {"radius_m": None}), {}, "target.radius_m"),
+        ({**METAL, "radius_m": 0.01}, {}, "target.radius_m"),
+        ({**METAL, "mass_kg": 0.01}, {}, "target.mass_kg"),
+        ({**TWIN, "thickness_m": 0.01}, {}, "target.thickness_m"),
+        (TWIN, {"support": "half-space"}, "impact.support"),
+        ({**TWIN, "radius_m": -0.004}, {}, "target.radius_m"),
     ):
         with pytest.raises((InputError, InputErrors)) as told:
-            setup(text).scene(LAWS["fitted"])
+            met(target, impact=impact).scene(LAWS["fitted"])
         assert key in str(told.value)
 
 

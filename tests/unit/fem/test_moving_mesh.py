@@ -1,4 +1,4 @@
-"""The mesh that follows the contact: its rings, and the transfer from one mesh to the next."""
+"""The mesh that follows the contact: its rings, what one hands to the next, what meshing leaves."""
 
 from dataclasses import replace
 
@@ -14,6 +14,7 @@ from dentscope.fem.loading import Loading, Tally
 from dentscope.fem.material import EXACT
 from dentscope.fem.mesh import Zone, ladder_rings
 from dentscope.fem.remesh import Transfer, moved_outwards
+from made_processes import python
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
 ELASTIC = Material(E=200e9, nu=0.3)
@@ -24,6 +25,10 @@ SETTINGS = fem.Accuracy.smoke()
 def grids():
     problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
     return [discretise(problem, SETTINGS, Zone(low, 3.0 * low)) for low in (0.02, 0.03)]
+
+
+def virgin(grid):
+    return State.virgin(len(grid.elements.conn))
 
 
 @pytest.mark.parametrize("low", [0.001, 0.02, 0.2])
@@ -70,7 +75,7 @@ def test_transfer_to_the_same_mesh_copies_all_but_the_innermost_block(grids):
     grid = grids[0]
     rng = np.random.default_rng(1)
     u = rng.normal(0.0, 1e-6, grid.n_dofs)
-    state, _ = advance(grid.elements, u, state=State.virgin(len(grid.elements.conn)), rule=EXACT)
+    state, _ = advance(grid.elements, u, state=virgin(grid), rule=EXACT)
     assert state.peeq.max() > 0.0
     carry = Transfer(grid, grid)
     nodes, quads = (
@@ -113,18 +118,12 @@ def test_what_has_never_yielded_keeps_no_memory_of_the_old_mesh(grids):
     old, new = grids
     x, y = (grid.mesh.points for grid in grids)
     strain = np.array([-1e-4, 3e-4])
-    state, _ = advance(
-        old.elements,
-        (strain * x).ravel(),
-        state=State.virgin(len(old.elements.conn)),
-        rule=EXACT,
-    )
+    state, _ = advance(old.elements, (strain * x).ravel(), state=virgin(old), rule=EXACT)
     exact = (strain * y).ravel()
     carried = Transfer(old, new).state(state, exact)
     force, untouched = np.zeros(new.n_dofs), np.zeros(new.n_dofs)
     bulk_forces(new.elements, exact, state=carried, rule=EXACT, force=force)
-    virgin = State.virgin(len(new.elements.conn))
-    bulk_forces(new.elements, exact, state=virgin, rule=EXACT, force=untouched)
+    bulk_forces(new.elements, exact, state=virgin(new), rule=EXACT, force=untouched)
     assert force == pytest.approx(untouched, abs=1e-12 * np.abs(untouched).max())
 
 
@@ -153,7 +152,7 @@ def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(
     forces = []
     for elements in (nonlinear, everywhere):
         force = np.zeros(grid.n_dofs)
-        bulk_forces(elements, u, state=State.virgin(n), rule=EXACT, force=force)
+        bulk_forces(elements, u, state=virgin(grid), rule=EXACT, force=force)
         forces.append(force)
     assert forces[1] == pytest.approx(forces[0], abs=1e-5 * np.abs(forces[0]).max())
     assert (grid.elements.linear >= 0).any()
@@ -247,3 +246,32 @@ def test_friction_s_tangent_is_the_derivative_of_its_forces(grids, flat_is_slave
     stored = 0.5 * np.sum(surfaces.mass * stress / surfaces.stiffness)
     assert contact.energy == pytest.approx(stored, rel=1e-9)
     tangent_is_the_derivative(surfaces, x, triplets, m, rng, step=1e-10, grip=grip)
+
+
+BROKEN = """
+import os, threading
+from dentscope.fem.mesh.bodies import _session
+
+def mesh():
+    with _session():
+        pass
+
+if {thread}:
+    one = threading.Thread(target=mesh)
+    one.start()
+    one.join()
+else:
+    mesh()
+reads, writes = os.pipe()
+os.close(reads)
+try:
+    os.write(writes, b"1")
+except BrokenPipeError:
+    print("told")
+"""
+
+
+def test_a_broken_pipe_after_meshing_is_an_error_and_not_the_end():
+    for thread in (False, True):
+        answer = python("-c", BROKEN.format(thread=thread))
+        assert (answer.returncode, answer.stdout) == (0, "told\n"), (thread, answer)

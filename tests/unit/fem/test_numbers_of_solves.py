@@ -24,6 +24,12 @@ from dentscope.fem.results.measure import edge_of_contact
 from dentscope.fem.results.ripple import _weights
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
+PROBLEM = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
+
+
+@pytest.fixture(scope="module")
+def grid():
+    return discretise(PROBLEM, fem.Accuracy.smoke(), Zone(0.02, 0.06))
 
 
 def searched(unbalanced) -> int:
@@ -260,10 +266,8 @@ def test_rings_have_four_divisions_and_grow_by_a_quarter() -> None:
 
 
 @pytest.mark.parametrize(("volume", "inverted"), [(0.021, False), (0.019, True)])
-def test_an_element_of_a_fiftieth_of_its_volume_is_inverted(volume, inverted) -> None:
+def test_an_element_of_a_fiftieth_of_its_volume_is_inverted(grid, volume, inverted) -> None:
     """All heights are that much smaller, no radius moves."""
-    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
-    grid = discretise(problem, fem.Accuracy.smoke(), Zone(0.02, 0.06))
     elements, n = grid.elements.elastic, len(grid.elements.conn)
     u = np.zeros(grid.n_dofs)
     u[1::2] = (volume - 1.0) * grid.mesh.points[:, 1]
@@ -289,10 +293,9 @@ def test_a_step_that_was_easy_lets_the_next_be_longer(iterations, power) -> None
 
 
 def test_a_path_begins_three_quarters_of_its_first_depth_in() -> None:
-    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
-    assert _stops(problem, 1.0)[0] == pytest.approx(0.75e-4)
+    assert _stops(PROBLEM, 1.0)[0] == pytest.approx(0.75e-4)
     # well below first yield, where that comes sooner
-    assert _stops(problem, 1e-4)[0] == pytest.approx(0.75 * 0.3e-4)
+    assert _stops(PROBLEM, 1e-4)[0] == pytest.approx(0.75 * 0.3e-4)
 
 
 def test_rings_inside_the_zone_widen_in_three_steps() -> None:
@@ -302,9 +305,7 @@ def test_rings_inside_the_zone_widen_in_three_steps() -> None:
     assert zone.allowed(0.2, fine=0.02, coarse=0.1) == 0.02
 
 
-def test_the_first_ring_and_the_linear_half_space_lie_where_they_are_said() -> None:
-    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
-    grid = discretise(problem, fem.Accuracy.smoke(), Zone(0.02, 0.06))
+def test_the_first_ring_and_the_linear_half_space_lie_where_they_are_said(grid) -> None:
     # 0.12 of the zone's inner end, moved to the rung below: a quarter of a fine ring at the most
     first = grid.mesh.rings[0] / (0.12 * 0.02)
     assert (1.0 + fem.Accuracy.smoke().fine) ** -0.25 < first <= 1.0

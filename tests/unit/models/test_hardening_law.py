@@ -111,11 +111,8 @@ def test_a_constant_curve_is_perfect_plasticity():
     flat = Material(E=206e9, nu=0.3, Sy=3e8, flow=Flow(measured(((0.0, 300.0), (1.0, 300.0)))))
     pair, plain = Pair(BALL, flat, 1e-3), Pair(BALL, flat.with_(flow=None), 1e-3)
     d = np.geomspace(1e-6, 0.17, 300) * pair.R
-    for a, b in (
-        (HARDENING.loading(pair, d), HARDENING.loading(plain, d)),
-        (HARDENING.contact_radius(pair, d), HARDENING.contact_radius(plain, d)),
-    ):
-        assert a == pytest.approx(b, rel=1e-12)
+    for answer in (HARDENING.loading, HARDENING.contact_radius):
+        assert answer(pair, d) == pytest.approx(answer(plain, d), rel=1e-12)
 
 
 # CalculiX 2.20, axisymmetric, finite strain, elastic ball of 1 mm on a flat of the measured curve;

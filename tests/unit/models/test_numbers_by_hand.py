@@ -7,20 +7,13 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, swift, tabulated
-from dentscope.models import LAWS, critical_depth
+from dentscope.models import LAWS, critical_depth, hardening
 from dentscope.models.anchored import _grid
 from dentscope.models.choose import demand, objection
-from dentscope.models.closed_form import still_flat_at
+from dentscope.models.closed_form import PairNumbers, still_flat_at
 from dentscope.models.correction import CHANNELS, moved
-from dentscope.models.hardening import (
-    _fuller,
-    _under,
-    equivalent,
-    mean_over_strains,
-    representative_strain,
-)
 from dentscope.models.table import LoadingCurve, PairTable, Turns
-from dentscope.models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE, deviation
+from dentscope.models.uncertainty import LEAST, METAL, RECOVERY_EXPONENT, WITH_CURVE, deviation
 
 HARD = Material(E=2e11, nu=0.3, Sy=2e9)
 STEEL = Material(E=2e11, nu=0.3, Sy=4e8)
@@ -56,11 +49,7 @@ def test_one_regime_takes_over_from_the_other_no_more_sharply_than_the_twentieth
 
 def test_a_shift_bends_towards_four_of_its_units() -> None:
     """c is a factor of unit 0.03: a shift of x moves ln c by 0.03 x/sqrt(1 + x^2/16)."""
-    numbers = LAWS["compact"].numbers
-    from dentscope.models.closed_form import PairNumbers
-
     ones = PairNumbers(*(np.ones(1) for _ in PairNumbers._fields))
-    assert callable(numbers)
     for x in (1.0, 4.0, 100.0):
         shifts = np.zeros((1, len(CHANNELS)))
         shifts[0, list(CHANNELS).index("c")] = x
@@ -69,18 +58,18 @@ def test_a_shift_bends_towards_four_of_its_units() -> None:
 
 
 def test_the_strain_that_stands_for_all_is_a_fifth_of_a_over_r_beyond_yield() -> None:
-    found = representative_strain(np.array([0.1, 0.3]), 0.2)
+    found = hardening.representative_strain(np.array([0.1, 0.3]), 0.2)
     assert found == pytest.approx([0.0, 0.2 * 0.1])
 
 
 def test_strains_fall_from_three_times_that_one_with_the_power_seventeen_tenths() -> None:
     """Of p^n over strains 3 x^1.7, x even in (0, 1): 3^n/(1 + 1.7 n); the force has it far out."""
-    assert mean_over_strains(0.3) == pytest.approx(3.0**0.3 / 1.51)
+    assert hardening.mean_over_strains(0.3) == pytest.approx(3.0**0.3 / 1.51)
     flows = SimpleNamespace(n=np.array([0.3]))
     far = SimpleNamespace(
         at=SimpleNamespace(phi=np.array([0.5])), sphere=flows, flat=flows, y=np.array([1e12])
     )
-    assert _fuller(far) == pytest.approx([1.51 / 3.0**0.3])
+    assert hardening._fuller(far) == pytest.approx([1.51 / 3.0**0.3])
 
 
 def power_law(n=0.2):
@@ -89,7 +78,7 @@ def power_law(n=0.2):
 
 
 def test_a_table_of_means_reaches_from_1e_minus_8_to_5_in_400_rows_of_60_strains() -> None:
-    x, under = _under(power_law())
+    x, under = hardening._under(power_law())
     assert np.exp(x[[0, -1]]) == pytest.approx([1e-8, 5.0])
     assert len(x) == 400
     # the middle of the first of 60 shares, 1/120, is the smallest strain
@@ -105,13 +94,13 @@ def test_a_bend_is_the_change_of_the_exponent_over_a_factor_of_e_to_both_sides()
     x = np.linspace(-20.0, 3.0, 3000)
     p = np.concatenate([[0.0], np.exp(x)])
     stress = np.exp(np.concatenate([[x[0]], x]) * 0.3 + 0.5 * 0.01 * np.append(x[0], x) ** 2)
-    at, under = _under(tabulated(p, 1e8 * stress))
+    at, under = hardening._under(tabulated(p, 1e8 * stress))
     k = int(np.argmin(np.abs(at + 5.0)))
     assert under.bend[k] == pytest.approx(0.02, rel=0.05)
 
 
 def test_a_path_begins_at_a_hundredth_of_the_critical_depth_and_ends_at_three_fifths() -> None:
-    D = equivalent(LAWS["fitted"], PAIR, points=5).D
+    D = hardening.equivalent(LAWS["fitted"], PAIR, points=5).D
     assert D[0] == pytest.approx(0.01 * critical_depth(PAIR) / 1e-3)
     assert D[-1] == pytest.approx(0.6)
     grid = np.exp(_grid(PAIR, 0.6))
@@ -128,25 +117,23 @@ def test_part_and_radius_of_a_flow_are_found_in_14_rounds_of_3() -> None:
             asked.append(1)
             return law.numbers(bodies)
 
-    equivalent(Counting(), PAIR, points=5)
+    hardening.equivalent(Counting(), PAIR, points=5)
     # two ends first, and the weakest metal last
     assert len(asked) == 3 * (14 + 2) + 1
 
 
 def test_between_data_a_correction_fades_over_three_tenths_of_a_coordinate() -> None:
-    from dentscope.models.hardening import coordinates_of, features_of
-
     flowing = Material(E=2e11, nu=0.3, Sy=4e8, flow=Flow(swift(Sy=4e8, K=9e8, n=0.2)))
-    e = equivalent(LAWS["fitted"], Pair(HARD, flowing, 1e-3), points=9)
-    sphere, flat = coordinates_of(e)
+    e = hardening.equivalent(LAWS["fitted"], Pair(HARD, flowing, 1e-3), points=9)
+    sphere, flat = hardening.coordinates_of(e)
     low = np.minimum(sphere, flat).min(axis=0) - 1.0
     high = np.maximum(sphere, flat).max(axis=0) + 1.0
-    inside = features_of(e, low, high)
+    inside = hardening.features_of(e, low, high)
     # 21 monomials of five coordinates up to the second degree
     assert inside.shape[1] == 2 * (21 + 6) + 5
     # all points of the flat 0.3 below the least radius: exp(-1/2) of the constant's feature
     low[0] = flat[-1, 0] + 0.3
-    outside = features_of(e, low, np.maximum(high, low))
+    outside = hardening.features_of(e, low, np.maximum(high, low))
     flat_constant = 27
     assert outside[-1, flat_constant] / inside[-1, flat_constant] == pytest.approx(math.exp(-0.5))
 
@@ -172,8 +159,6 @@ def test_a_solve_counts_from_four_fifths_of_the_critical_depth_after_seven_of_he
 
 def test_no_law_is_known_to_better_than_a_thousandth() -> None:
     features = np.array([[1.0, 0.0]])
-    from dentscope.models.uncertainty import LEAST
-
     assert deviation(features, np.array([-50.0, 0.0]), least=LEAST) == pytest.approx([1e-3])
 
 

@@ -8,6 +8,7 @@ from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, UNAVAILABLE, critical_depth, law_named
 from dentscope.models.base import Standing
 from dentscope.models.kernel import common_parameters
+from dentscope.models.published import ghaednia
 from dentscope.models.published.brake import brake_2015, effective_hardness, stress_factor
 from dentscope.models.published.brizmer import stick_over_slip
 
@@ -127,21 +128,17 @@ def test_thornton_constants():
     assert restitution(1e4) * 10.0 == pytest.approx(1.18, abs=0.006)
 
 
-def test_stronge_is_continuous_at_both_borders():
-    pair = unit_pair()
-    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+STRONGE_ONSET = (0.75 * math.pi * 1.1 / 400.0) ** 2
+
+
+def test_stronge_is_continuous_at_both_borders_and_reaches_2_8_and_its_radius():
+    pair, onset = unit_pair(), STRONGE_ONSET
     for w, tolerance in ((1.0, 1e-6), (84.0, 3e-3)):
         low, high = (force("stronge", pair, w * onset * f) for f in (1 - 1e-8, 1 + 1e-8))
         assert high == pytest.approx(low, rel=tolerance)
     # (2*10 - 1)(1 + ln(19)/3.3) = 35.953
-    assert force("stronge", pair, 10 * onset) / hertz(pair, onset) == pytest.approx(
-        35.953, rel=1e-4
-    )
-
-
-def test_stronge_reaches_2_8_and_its_radius():
-    pair = unit_pair()
-    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+    within = force("stronge", pair, 10 * onset) / hertz(pair, onset)
+    assert within == pytest.approx(35.953, rel=1e-4)
     d = 200.0 * onset
     a2 = radius("stronge", pair, d) ** 2
     assert a2 == pytest.approx(2.0 * d - onset, rel=1e-12)
@@ -150,8 +147,7 @@ def test_stronge_reaches_2_8_and_its_radius():
 
 def test_sinclair_follansbee_between_its_two_ends():
     """p = 1.1 S where Hertz's mean pressure is, 2.8 S from a E'/(R S) = 50 (thesis 1.3.1)."""
-    pair = unit_pair()
-    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+    pair, onset = unit_pair(), STRONGE_ONSET
     pressure = float(LAWS["sinclair-follansbee"].hardness(pair, onset))
     assert pressure == pytest.approx(1.1, rel=1e-9)
     full = 0.5 * ((50.0 / 400.0) ** 2 + onset)
@@ -255,8 +251,6 @@ def test_every_law_says_what_was_read_and_what_is_missing():
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_stretched_hand_over_of_the_thesis_model_stays_near_the_printed_factors(ratio):
     """Between delta_n = 408 and 480 chi differs by at most 2.3 % from 2.25 and 2.32."""
-    from dentscope.models.published import ghaednia
-
     s, f = (3e8, 3e8 / ratio) if ratio < 1.0 else (3e8 * ratio, 3e8)
     pair = Pair(Material(E=2e11, nu=NU, Sy=s), Material(E=2e11, nu=NU, Sy=f), 1e-3)
     par = LAWS["ghaednia"].parameters(pair)
@@ -375,8 +369,7 @@ def test_kogut_etsion_continued_leaves_the_other_at_110_only():
     onset = SLOPE**2 * R
     below, above = 100.0 * onset, 500.0 * onset
     assert force("kogut-etsion-continued", PAIR, below) == force("kogut-etsion", PAIR, below)
-    hertz = 4.0 / 3.0 * E_RED * math.sqrt(R) * onset**1.5
-    expected = 1.40 * 500.0**1.263 * hertz
+    expected = 1.40 * 500.0**1.263 * hertz(PAIR, onset)
     assert force("kogut-etsion-continued", PAIR, above) == pytest.approx(expected, rel=1e-9)
 
 

@@ -15,6 +15,7 @@ from dentscope.models.table import LoadingCurve, PairTable, Turns, table_law
 from dentscope.models.table_file import write_table
 from dentscope.start.blows import impact
 from made_cases import table_of
+from made_files import put
 
 PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1.h5"
 
@@ -137,9 +138,7 @@ def fitted(tmp_path):
     content = json.loads(COEFFICIENTS_FILE.read_text())
     first = next(iter(content["coefficients"].values()))
     first["value"] *= 1.1
-    path = tmp_path / "fitted.json"
-    path.write_text(json.dumps(content))
-    return path
+    return put(tmp_path / "fitted.json", json.dumps(content))
 
 
 @pytest.mark.parametrize("kind", ["compact", "fitted", "hardening"])

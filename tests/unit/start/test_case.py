@@ -8,6 +8,7 @@ import matplotlib.image as mpimg
 import meshio
 import numpy as np
 import pytest
+import tomlkit
 from dentscope.campaigns import read_curves
 from dentscope.cli.case import tell_unused
 from dentscope.core import InputError
@@ -16,30 +17,34 @@ from dentscope.models import law_named
 from dentscope.start.ball_file import read_ball
 from dentscope.start.case_file import read_case, read_pair
 from dentscope.start.measured import brinell, loading_work
-from made_files import put, rows_of
+from made_files import changed, put, rows_of
 
-GOOD = """
-radius_m = 0.002
-[sphere]
-E_Pa = 200e9
-nu = 0.3
-Sy_Pa = 900e6
-[flat]
-E_Pa = 200e9
-nu = 0.3
-Sy_Pa = 300e6
-[load]
-max_delta_over_R = 3e-4
-unload_from = [3e-4]
-[accuracy]
-level = "smoke"
-"""
+GOOD = {
+    "radius_m": 0.002,
+    "sphere": {"E_Pa": 200e9, "nu": 0.3, "Sy_Pa": 900e6},
+    "flat": {"E_Pa": 200e9, "nu": 0.3, "Sy_Pa": 300e6},
+    "load": {"max_delta_over_R": 3e-4, "unload_from": [3e-4]},
+    "accuracy": {"level": "smoke"},
+}
+RATE = {"law": "cowper-symonds", "D_1_s": 6500, "q": 4}
+CURVED = {"E_Pa": 70e9, "nu": 0.33, "Sy_Pa": None, "flow_curve": "curve.csv", "rate": RATE}
+HARD = changed(GOOD, {"flat": CURVED, "load": {"unload_from": None, "speed_m_s": 2.0}})
+SWIFT = {"law": "swift", "K_Pa": 600e6, "n": 0.2}
+WRITTEN = {"flow_curve": None, "Sy_Pa": 276e6, "hardening": SWIFT}
+NONE = {"E_Pa": None, "nu": None, "Sy_Pa": None}
+CURVE = "plastic_strain,stress_Pa\n0,276e6\n0.01,300e6\n0.1,350e6\n"
+
+
+def case_of(tmp_path, content, changes=None, curve=CURVE):
+    """A file of a case with these changes, and a flow curve beside it."""
+    put(tmp_path / "curve.csv", curve)
+    return put(tmp_path / "case.toml", tomlkit.dumps(changed(content, changes or {})))
 
 
 @pytest.mark.fe
 def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path, prints):
-    text = GOOD.replace("[3e-4]", "[1.5e-4, 2.1e-4, 3e-4]")
-    prints("case", put(tmp_path / "case.toml", text), "--out", tmp_path / "out")
+    file = case_of(tmp_path, GOOD, {"load.unload_from": [1.5e-4, 2.1e-4, 3e-4]})
+    prints("case", file, "--out", tmp_path / "out")
     rows = rows_of(tmp_path / "out" / "curve.csv")
     assert {row["phase"] for row in rows} == {"load", "unload-1", "unload-2", "unload-3"}
     load = [row for row in rows if row["phase"] == "load"]
@@ -90,104 +95,68 @@ def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path, prints):
         assert mpimg.imread(tmp_path / "out" / name).std() > 0.05
 
 
-HARD = """
-radius_m = 0.002
-[sphere]
-E_Pa = 200e9
-nu = 0.3
-Sy_Pa = 900e6
-[flat]
-E_Pa = 70e9
-nu = 0.33
-flow_curve = "curve.csv"
-[flat.rate]
-law = "cowper-symonds"
-D_1_s = 6500
-q = 4
-[load]
-max_delta_over_R = 3e-4
-speed_m_s = 2.0
-[accuracy]
-level = "smoke"
-"""
-CURVE = "plastic_strain,stress_Pa\n0,276e6\n0.01,300e6\n0.1,350e6\n"
-SWIFT = """Sy_Pa = 276e6
-[flat.hardening]
-law = "swift"
-K_Pa = 600e6
-n = 0.2
-"""
-
-
-def read(tmp_path, text=HARD, curve=CURVE):
-    put(tmp_path / "curve.csv", curve)
-    return read_case(put(tmp_path / "case.toml", text))[0]
+def read(*given, **asked):
+    return read_case(case_of(*given, **asked))[0]
 
 
 def test_a_flow_curve_a_rate_and_a_speed_reach_the_solver(tmp_path):
-    problem = read(tmp_path)
+    problem = read(tmp_path, HARD)
     flat = problem.pair.flat
     assert flat.Sy == 276e6
     assert flat.flow.curve(0.01) == pytest.approx(300e6)
     assert (flat.flow.rate.law, flat.flow.rate.reference) == ("cowper-symonds", 6500.0)
     # 0.3 um at 2 m/s
     assert problem.clock.seconds(0.0, 1.5e-4) == pytest.approx(1.5e-7)
-    slowing = read(tmp_path, HARD.replace("2.0", "[[0.0, 2.0], [3e-4, 1.0]]"))
+    slowing = read(tmp_path, HARD, {"load.speed_m_s": [[0.0, 2.0], [3e-4, 1.0]]})
     exact = 0.002 * 3e-4 * np.log(2.0)  # dt = d Delta/v, v linear
     assert slowing.clock.seconds(3e-4, 0.0) == pytest.approx(exact, rel=1e-12)
     assert slowing.clock.seconds(0.0, 6e-4) == pytest.approx(exact + 6e-7, rel=1e-12)
-    written = read(tmp_path, HARD.replace('flow_curve = "curve.csv"\n', SWIFT))
+    written = read(tmp_path, HARD, {"flat": WRITTEN})
     assert written.pair.flat.flow.curve(0.1) == pytest.approx(
         600e6 * ((276 / 600) ** 5 + 0.1) ** 0.2, rel=1e-6
     )
 
 
 WRONG = [
-    ("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "E_Pa = -1\nnu = 0.3", ["sphere.E_Pa", "-1"]),
-    ("nu = 0.3\nSy_Pa = 300e6", "nu = 0.5\nSy_Pa = 300e6", ["flat.nu", "0.5"]),
-    ("Sy_Pa = 300e6", "Sy_Pa = 0", ["flat.Sy_Pa"]),
-    ("radius_m = 0.002", "radius_m = 0", ["radius_m"]),
-    ("radius_m = 0.002", "", ["radius_m", "missing"]),
-    ("radius_m = 0.002", "radius_m = 20", ["radius_m: 20", "20 mm would be 0.02"]),
-    ("max_delta_over_R = 3e-4", "max_delta_over_R = 3", ["load.max_delta_over_R"]),
-    ("unload_from = [3e-4]", "unload_from = [0.1]", ["load.unload_from"]),
+    ({"sphere": {"E_Pa": -1, "Sy_Pa": None}}, ["sphere.E_Pa", "-1"]),
+    ({"flat.nu": 0.5}, ["flat.nu", "0.5"]),
+    ({"flat.Sy_Pa": 0}, ["flat.Sy_Pa"]),
+    ({"radius_m": 0}, ["radius_m"]),
+    ({"radius_m": None}, ["radius_m", "missing"]),
+    ({"radius_m": 20}, ["radius_m: 20", "20 mm would be 0.02"]),
+    ({"load.max_delta_over_R": 3}, ["load.max_delta_over_R"]),
+    ({"load.unload_from": [0.1]}, ["load.unload_from"]),
     # legal numbers that coordinates in double precision cannot carry
-    (
-        "max_delta_over_R = 3e-4\nunload_from = [3e-4]",
-        "max_delta_over_R = 1e-12",
-        ["load.max_delta_over_R", "1e-07 to 0.5"],
-    ),
-    ("Sy_Pa = 300e6", "Sy_Pa = 1e3", ["Sy_Pa", "first yield at Delta/R = "]),
-    ('level = "smoke"', 'level = "best"', ["accuracy.level", "production"]),
-    ("[flat]", "[flat]\nhardness = 3", ["flat.hardness", "unknown key"]),
-]
+    ({"load": {"max_delta_over_R": 1e-12, "unload_from": None}},
+     ["load.max_delta_over_R", "1e-07 to 0.5"]),
+    ({"flat.Sy_Pa": 1e3}, ["Sy_Pa", "first yield at Delta/R = "]),
+    ({"accuracy.level": "best"}, ["accuracy.level", "production"]),
+    ({"flat.hardness": 3}, ["flat.hardness", "unknown key"]),
+]  # fmt: skip
 WRONG_FLOW = [
-    ("q = 4", "", ["flat.rate.q", "missing", "cowper-symonds"]),
-    ("q = 4", "q = 4\nC = 0.1", ["flat.rate.C", "0.1", "D_1_s, q"]),
-    ('law = "cowper-symonds"', 'law = "fast"', ["flat.rate.law", "fast"]),
-    ("speed_m_s = 2.0", "", ["case.toml", "load.speed_m_s", "missing"]),
-    ("speed_m_s = 2.0", "speed_m_s = -2.0", ["speed_m_s", "-2"]),
-    ("speed_m_s = 2.0", "speed_m_s = [[0.1, 2], [0.0, 1]]", ["speed_m_s", "[0, 1]"]),
-    ("curve.csv", "other.csv", ["case.toml", "flat.flow_curve", "other.csv"]),
-    ('flow_curve = "curve.csv"', 'flow_curve = "curve.csv"\nSy_Pa = 3e8',
-     ["flat.Sy_Pa", "2.76e+08"]),
-    ('flow_curve = "curve.csv"', "", ["flat.Sy_Pa", "missing"]),
-    ('flow_curve = "curve.csv"\n', 'flow_curve = "curve.csv"\n' + SWIFT[14:],
-     ["flat.hardening", "flow_curve"]),
-    ('flow_curve = "curve.csv"\n', SWIFT.replace("600e6", "200e6"), ["flat.hardening.K_Pa"]),
-    ('flow_curve = "curve.csv"\n', SWIFT.replace("n = 0.2", "b = 2"),
+    ({"flat.rate.q": None}, ["flat.rate.q", "missing", "cowper-symonds"]),
+    ({"flat.rate.C": 0.1}, ["flat.rate.C", "0.1", "D_1_s, q"]),
+    ({"flat.rate.law": "fast"}, ["flat.rate.law", "fast"]),
+    ({"load.speed_m_s": None}, ["case.toml", "load.speed_m_s", "missing"]),
+    ({"load.speed_m_s": -2.0}, ["speed_m_s", "-2"]),
+    ({"load.speed_m_s": [[0.1, 2], [0.0, 1]]}, ["speed_m_s", "[0, 1]"]),
+    ({"flat.flow_curve": "other.csv"}, ["case.toml", "flat.flow_curve", "other.csv"]),
+    ({"flat.Sy_Pa": 3e8}, ["flat.Sy_Pa", "2.76e+08"]),
+    ({"flat.flow_curve": None}, ["flat.Sy_Pa", "missing"]),
+    ({"flat.hardening": SWIFT}, ["flat.hardening", "flow_curve"]),
+    ({"flat": {**WRITTEN, "hardening": {**SWIFT, "K_Pa": 200e6}}}, ["flat.hardening.K_Pa"]),
+    ({"flat": {**WRITTEN, "hardening": {"law": "swift", "K_Pa": 600e6, "b": 2}}},
      ["flat.hardening.n", "missing"]),
-    ("nu = 0.33", "rigid = true", ["flat", "rigid"]),
+    ({"flat": {"nu": None, "rigid": True}}, ["flat", "rigid"]),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("text", "old", "new", "words"),
+    ("content", "changes", "words"),
     [*((GOOD, *row) for row in WRONG), *((HARD, *row) for row in WRONG_FLOW)],
 )
-def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, text, old, new, words):
-    put(tmp_path / "curve.csv", CURVE)
-    path = put(tmp_path / "case.toml", text.replace(old, new))
+def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, content, changes, words):
+    path = case_of(tmp_path, content, changes)
     message = errs("case", path, "--out", tmp_path / "out").strip()
     assert len(message.splitlines()) == 1, message
     for word in [str(path), *words]:
@@ -196,8 +165,8 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, errs, text, old, new, word
 
 
 def test_a_flow_curve_of_a_recording_set_is_one_of_a_case(tmp_path):
-    as_a_set = read(tmp_path, curve=CURVE.replace("stress_Pa", "true_stress_Pa"))
-    assert as_a_set.pair == read(tmp_path).pair
+    as_a_set = read(tmp_path, HARD, curve=CURVE.replace("stress_Pa", "true_stress_Pa"))
+    assert as_a_set.pair == read(tmp_path, HARD).pair
 
 
 @pytest.mark.parametrize(
@@ -210,18 +179,15 @@ def test_a_flow_curve_of_a_recording_set_is_one_of_a_case(tmp_path):
 )
 def test_a_mistake_in_a_flow_curve_names_its_row(tmp_path, curve, words):
     with pytest.raises(InputError) as caught:
-        read(tmp_path, curve=curve)
+        read(tmp_path, HARD, curve=curve)
     for word in ["curve.csv", *words]:
         assert word in str(caught.value)
 
 
 def test_a_speed_without_a_rate_is_told(tmp_path, capsys):
-    bodies = "[sphere]\nE_Pa = 2e11\nnu = 0.3\n[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 3e8\n"
-    load = "[load]\nmax_delta_over_R = 0.01\nspeed_m_s = 1.0\n"
-    tell_unused(put(tmp_path / "case.toml", f"radius_m = 0.01\n{bodies}{load}"))
+    tell_unused(case_of(tmp_path, GOOD, {"load.speed_m_s": 1.0}))
     assert "load.speed_m_s does nothing here: neither body has a rate" in capsys.readouterr().out
-    rate = '[flat.rate]\nlaw = "cowper-symonds"\nD_1_s = 40.0\nq = 5.0\n'
-    tell_unused(put(tmp_path / "case.toml", f"radius_m = 0.01\n{bodies}{rate}{load}"))
+    tell_unused(case_of(tmp_path, GOOD, {"load.speed_m_s": 1.0, "flat.rate": RATE}))
     assert capsys.readouterr().out == ""
 
 
@@ -249,13 +215,12 @@ def test_the_work_of_a_loading_is_exact_for_hertz():
 
 
 def test_the_mass_of_the_ball_is_that_of_its_density(tmp_path):
-    mass, weighed = 4.0 / 3.0 * np.pi * 0.002**3 * 7800.0, "density_kg_m3 = 7800\n[flat]"
-    path = put(tmp_path / "case.toml", GOOD.replace("[flat]", weighed))
-    assert read_pair(path)[0].ball_mass == pytest.approx(mass)
-    assert np.isnan(read_pair(put(path, GOOD))[0].ball_mass)
+    mass, weighed = 4.0 / 3.0 * np.pi * 0.002**3 * 7800.0, {"sphere.density_kg_m3": 7800}
+    assert read_pair(case_of(tmp_path, GOOD, weighed))[0].ball_mass == pytest.approx(mass)
+    assert np.isnan(read_pair(case_of(tmp_path, GOOD))[0].ball_mass)
     # one that does not deform weighs as much, for the programs that are given it too
-    rigid = GOOD.replace("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "rigid = true", 1)
-    assert read_ball(put(path, rigid.replace("[flat]", weighed))).mass == pytest.approx(mass)
+    rigid = case_of(tmp_path, GOOD, {"sphere": {**NONE, "rigid": True, "density_kg_m3": 7800}})
+    assert read_ball(rigid).mass == pytest.approx(mass)
 
 
 @pytest.mark.fe

@@ -23,6 +23,10 @@ from dentscope.recordings import read
 from dentscope.recordings.shipped import set_folder
 from made_processes import python
 
+HARD = ds.Material(E=210e9, nu=0.3, Sy=2e9, density=7800.0)
+SOFT = ds.Material(E=200e9, nu=0.3, Sy=3e8)
+CURVE = tabulated(np.array([0.0, 0.2]), np.array([3e8, 6e8]))
+
 
 def test_importing_loads_nothing_heavy_and_everything_is_there():
     program = (
@@ -71,8 +75,7 @@ def test_the_laws_show_themselves_as_a_table():
 
 
 def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
-    hard, soft = ds.Material(E=210e9, nu=0.3, Sy=2e9), ds.Material(E=200e9, nu=0.3, Sy=3e8)
-    found = ds.compare_laws(ds.Pair(hard, soft, 10e-3))
+    found = ds.compare_laws(ds.Pair(HARD, SOFT, 10e-3))
     assert found.best[0] == "fitted"
     lines = repr(found).splitlines()
     assert lines[0].startswith("use: fitted (within 1 %)")
@@ -92,8 +95,7 @@ def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
 
 
 def test_a_pair_and_a_set_show_themselves():
-    soft = ds.Material(E=200e9, nu=0.3, Sy=3e8)
-    shown = ds.Pair(soft, ds.Material(rigid=True), 10e-3)._repr_html_()
+    shown = ds.Pair(SOFT, ds.Material(rigid=True), 10e-3)._repr_html_()
     assert "R = 10 mm" in shown
     # Young's modulus over 1 - nu^2 beside a rigid body
     assert "219.8 GPa" in shown
@@ -109,9 +111,7 @@ def test_a_pair_and_a_set_show_themselves():
 
 
 def test_a_pair_is_struck_at_one_speed_or_several():
-    hard = ds.Material(E=210e9, nu=0.3, Sy=2e9, density=7800.0)
-    soft = ds.Material(E=200e9, nu=0.3, Sy=3e8)
-    pair = ds.Pair(hard, soft, 5e-3)
+    pair = ds.Pair(HARD, SOFT, 5e-3)
     one = ds.impact(pair, speed=2, law="fitted")
     assert one.impacts["fitted"].kinetic_before_J == pytest.approx(
         0.5 * 7800.0 * 4.0 / 3.0 * math.pi * 5e-3**3 * 4.0
@@ -125,15 +125,13 @@ def test_a_pair_is_struck_at_one_speed_or_several():
     assert lines[0].get_ydata() == pytest.approx(several["restitution"][:2])
     heavier = ds.impact(pair, speed=2.0, law="fitted", mass=0.01)["fitted"]
     assert heavier.restitution < one["fitted"].restitution
-    assert ds.impact("ball", speed=2.0, law="hertz")["hertz"].restitution == pytest.approx(1.0)
-    curve = tabulated(np.array([0.0, 0.2]), np.array([3e8, 6e8]))
-    hardens = ds.Pair(hard, soft.with_(flow=Flow(curve)), 5e-3)
+    hardens = ds.Pair(HARD, SOFT.with_(flow=Flow(CURVE)), 5e-3)
     blow = ds.impact(hardens, speed=2.0, law="hardening")
     assert blow["hardening"].restitution > one["fitted"].restitution
     with pytest.raises(InputError, match="none of fitted follows it"):
         ds.impact(hardens, speed=2.0, law="fitted")
     with pytest.raises(InputError, match="mass: missing"):
-        ds.impact(ds.Pair(soft, hard, 5e-3), speed=1.0)
+        ds.impact(ds.Pair(SOFT, HARD, 5e-3), speed=1.0)
     with pytest.raises(InputError, match="over: with a pair"):
         ds.sweep(pair, over={"target.nu": [0.2, 0.3]})
     with pytest.raises(InputError, match=r"over: \[0.3\] .*'target.nu': "):
@@ -175,7 +173,7 @@ def test_a_law_that_is_not_known_says_what_comes_near():
     with pytest.raises(KeyError, match="did you mean 'fitted'"):
         ds.LAWS["fited"]
     with pytest.raises(InputError, match="did you mean 'fitted'"):
-        ds.compare_laws(ds.Pair(*[ds.Material(E=2e11, nu=0.3, Sy=3e8)] * 2, 1e-3), law="fited")
+        ds.compare_laws(ds.Pair(SOFT, SOFT, 1e-3), law="fited")
     assert ds.LAWS.get("fited") is None
 
 
@@ -192,7 +190,8 @@ def test_several_speeds_keep_the_angle_of_the_set_up():
 def test_a_law_is_given_by_name_or_as_it_is():
     hertz = ds.LAWS["hertz"]
     for given in (hertz, ["hertz"], "hertz"):
-        assert set(ds.impact("ball", speed=1.0, law=given).impacts) == {"hertz"}
+        (found,) = ds.impact("ball", speed=1.0, law=given).impacts.items()
+        assert (found[0], found[1].restitution) == ("hertz", pytest.approx(1.0, abs=1e-6))
     both = ds.impact("ball", speed=1.0, law=["hertz", hertz, "compact"])
     assert list(both.impacts) == ["hertz", "compact"]
     with pytest.raises(InputError, match="two laws 'hertz'"):
@@ -203,37 +202,40 @@ def test_a_law_is_given_by_name_or_as_it_is():
 
 @pytest.mark.parametrize("wrong", [1j, "2", "20 um", True, [1.0, 2.0], pandas.Series([1.0])])
 def test_a_number_is_one_number_and_what_is_none_is_named(wrong):
-    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8)
+    pair = ds.Pair(SOFT, SOFT, R=0.01)
     calls = {
         "speed": lambda: ds.impact("ball", speed=wrong),
         "mass": lambda: ds.impact("ball", mass=wrong),
         "friction": lambda: ds.impact("ball", friction=wrong),
         "E_Pa": lambda: ds.Material(E=wrong, nu=0.3),
-        "R": lambda: ds.Pair(steel, steel, R=wrong),
+        "R": lambda: ds.Pair(SOFT, SOFT, R=wrong),
         "max_delta_over_R": lambda: ds.compare_laws("nowhere.toml", max_delta_over_R=wrong),
-        "speed_m_s": lambda: ds.case(ds.Pair(steel, steel, R=0.01), speed_m_s=wrong),
+        "speed_m_s": lambda: ds.case(pair, speed_m_s=wrong),
         "seed": lambda: ds.diagnose("leeb-steel-800hv", seed=wrong),
         "mass_kg": lambda: dynamics.Striker(mass=wrong, tip_radius=0.01),
         "impact_speed_m_s": lambda: dynamics.Approach(wrong),
     }
     if np.ndim(wrong) == 0:
         calls |= {
-            "depth": lambda: ds.LAWS["fitted"].loading(ds.Pair(steel, steel, 0.01), wrong),
+            "depth": lambda: ds.LAWS["fitted"].loading(pair, wrong),
             "angle_deg": lambda: ds.sweep("ball", angle_deg=wrong),
             "setup": lambda: ds.impact(3.0),
         }
     for key, call in calls.items():
         with pytest.raises(InputError, match=rf"\b{key}: "):
             call()
+
+
+def test_a_number_of_any_kind_and_a_series_of_depths_are_taken():
+    pair = ds.Pair(SOFT, SOFT, R=0.01)
     one = ds.impact("ball", law="hertz", speed=np.float32(2.0))["hertz"]
     assert one.contact_time_s == ds.impact("ball", law="hertz", speed=2)["hertz"].contact_time_s
     rows = pandas.Series([1e-6, 2e-6])
-    assert len(ds.LAWS["fitted"].loading(ds.Pair(steel, steel, 0.01), rows)) == 2
+    assert len(ds.LAWS["fitted"].loading(pair, rows)) == 2
 
 
 def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
-    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8)
-    pair, fitted = ds.Pair(steel, steel, 0.01), ds.LAWS["fitted"]
+    pair, fitted = ds.Pair(SOFT, SOFT, 0.01), ds.LAWS["fitted"]
     calls = {
         "nonsense: no such file": lambda: ds.impact("nonsense", speed=2.0),
         "hertz": lambda: ds.impact("ball", law="nonsense"),
@@ -247,7 +249,7 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
             "leeb-steel-800hv", law=ds.LAWS["hertz"]
         ),
         "assume: air-drag": lambda: ds.diagnose("leeb-steel-800hv", assume="air-drag"),
-        "pair: Material": lambda: fitted.loading(steel, 1e-6),
+        "pair: Material": lambda: fitted.loading(SOFT, 1e-6),
         "pair: 3": lambda: fitted.residual(3, 1e-6),
         "depth: 3 depths of 2 pairs": lambda: fitted.loading([pair, pair], [1e-6, 2e-6, 3e-6]),
     }
@@ -260,8 +262,7 @@ def test_a_wrong_word_and_what_a_file_would_not_take_are_refused():
 
 
 def test_a_blow_aslant_takes_its_friction():
-    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8, density=7800.0)
-    pair = ds.Pair(steel, steel, 0.01)
+    pair = ds.Pair(SOFT.with_(density=7800.0), SOFT, 0.01)
     smooth, rough = (
         ds.impact(pair, law="hertz", speed=1.0, angle_deg=45.0, friction=mu)["hertz"]
         for mu in (None, 0.1)
@@ -274,17 +275,16 @@ def test_a_blow_aslant_takes_its_friction():
 def test_a_flow_curve_is_given_as_file_array_or_rows(tmp_path):
     file = tmp_path / "curve.csv"
     file.write_text("plastic_strain,stress_Pa\n0,3e8\n0.2,6e8\n")
-    curve = tabulated(np.array([0.0, 0.2]), np.array([3e8, 6e8]))
     for given in (file, str(file), ([0.0, 0.2], [3e8, 6e8]), np.array([[0.0, 3e8], [0.2, 6e8]]),
-                  curve, Flow(curve)):  # fmt: skip
+                  CURVE, Flow(CURVE)):  # fmt: skip
         body = ds.Material(2e11, 0.3, flow=given)
-        assert (body.Sy, body.flow) == (3e8, Flow(curve))
+        assert (body.Sy, body.flow) == (3e8, Flow(CURVE))
     with pytest.raises(InputError, match=r"flow: 300 .*300 MPa would be 3e\+08"):
         ds.Material(2e11, 0.3, flow=([0.0, 0.2], [300, 600]))
     with pytest.raises(InputError, match=r"flow: shape \(3,\) .*strains, stresses"):
         ds.Material(2e11, 0.3, flow=[1.0, 2.0, 3.0])
     with pytest.raises(InputError, match="the flow curve's first stress, 3e"):
-        ds.Material(2e11, 0.3, Sy=4e8, flow=curve)
+        ds.Material(2e11, 0.3, Sy=4e8, flow=CURVE)
 
 
 def test_signatures_say_what_is_taken_and_one_thing_is_returned():
@@ -310,8 +310,7 @@ def test_what_is_computed_goes_to_another_process_and_back():
     back = pickle.loads(pickle.dumps(blow))
     assert back["fitted"].restitution == blow["fitted"].restitution
     assert back.checks() == blow.checks()
-    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8)
-    pair = ds.Pair(steel, steel, 5e-3)
+    pair = ds.Pair(SOFT, SOFT, 5e-3)
     for name, law in pickle.loads(pickle.dumps(ds.LAWS)).items():
         assert law.loading(pair, 1e-5) == ds.LAWS[name].loading(pair, 1e-5)
         assert law == law

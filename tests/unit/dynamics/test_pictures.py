@@ -1,14 +1,23 @@
-"""The picture of a blow: rig and dent to scale, words on every axis, no empty panel."""
+"""Pictures: rig and dent to scale, words and units on every axis, no empty panel."""
+
+import warnings
+from functools import cache
 
 import made_blows
 import numpy as np
 import pytest
+from dentscope.dynamics.files.sweep import SweepTable
+from dentscope.dynamics.report import draw
 from dentscope.dynamics.report.crater import surfaces_left
 from dentscope.dynamics.report.picture import picture
 from dentscope.dynamics.report.rig_shape import rig_shape
-from dentscope.fitting.crater_shape import crater_shape
+from dentscope.fitting.crater_shape import Left, crater_shape
 from dentscope.models import LAWS
-from made_blows import blow
+from dentscope.models.base import DomainWarning
+from dentscope.start import impact
+from made_blows import setup
+
+blow = cache(made_blows.blow)
 
 BALL = made_blows.BALL.replace("7870", "7870\nthickness_m = 0.004").replace("= 1.0", "= 3.0")
 EQUAL = BALL.replace("1.7e9", "3.05e8")
@@ -86,15 +95,10 @@ def test_a_crater_has_the_band_of_its_depth_and_none_without_errors():
     assert not sure.std.any()
     assert band.std[middle] >= found.bands["fitted"].std("residual_flat_m")
     assert np.array_equal(sure.height, band.height)
-    shape = crater_shape(scene.pair, _left(impact, sure), "flat")
-    assert -sure.height[middle:] / impact.residual_flat_m == pytest.approx(-shape.height)
-
-
-def _left(impact, surface):
-    from dentscope.fitting.crater_shape import Left
-
     peak = impact.spot.imprints[0].peak
-    return Left(surface.radius, peak, impact.residual_sphere_m, impact.residual_flat_m)
+    kept = Left(sure.radius, peak, impact.residual_sphere_m, impact.residual_flat_m)
+    shape = crater_shape(scene.pair, kept, "flat")
+    assert -sure.height[middle:] / impact.residual_flat_m == pytest.approx(-shape.height)
 
 
 def test_a_scar_is_as_long_as_its_walls_reach():
@@ -122,7 +126,7 @@ def test_a_tip_that_ends_at_its_edge_has_a_depth_and_no_shape():
 
 @pytest.mark.parametrize("kind", ["ball", "second sphere", "seat", "rod"])
 def test_outlines_touch_at_the_origin_and_nowhere_overlap(kind):
-    rig = rig_shape(made_blows.setup(KINDS[kind][0]), np.zeros(0), np.zeros(0))
+    rig = rig_shape(setup(KINDS[kind][0]), np.zeros(0), np.zeros(0))
     assert rig.striker[:, 1].min() == pytest.approx(0.0, abs=1e-5)
     beside = np.abs(rig.striker[:, 0]) < 4e-3
     top = rig.struck[: len(rig.struck) // 2] if kind == "seat" else rig.struck
@@ -168,6 +172,56 @@ NOTHING_LEFT = {
 
 @pytest.mark.parametrize(("law", "given"), NOTHING_LEFT.values(), ids=NOTHING_LEFT)
 def test_what_leaves_nothing_to_draw_has_no_crater(law, given):
-    found = blow(given, law)
+    found = made_blows.blow(given, law)
     assert law == "ghaednia" or found[law].residual_sphere_m > 0.0  # else it shows nothing
     assert surfaces_left(found.setup.scene(LAWS[law]), found[law], None) == []
+
+
+@pytest.mark.parametrize(
+    ("values", "scale"),
+    [(np.geomspace(0.01, 1.0, 7), "log"), (np.linspace(0.01, 1.0, 7), "linear"),
+     (np.geomspace(1.0, 2.0, 7), "linear"), ([0.5], "linear")],
+)  # fmt: skip
+def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(values, scale):
+    some = dict.fromkeys(draw.SWEPT[:4], np.ones(2 * len(values)))
+    none = dict.fromkeys(draw.SWEPT[4:], np.zeros(2 * len(values)))
+    swept = {"drop_height_m": list(values), "friction": [0.1, 0.2]}
+    swept = swept if len(values) > 2 else {"drop_height_m": list(values)}
+    made = draw.draw_sweep(swept, {"fitted": some | none})
+    assert len(made.axes) == 4
+    assert {a.get_xlabel() for a in made.axes} == {"drop height [m]"}
+    (line,) = made.axes[0].get_lines()
+    assert (line.get_marker() == "o") == (len(values) == 1)  # one point is seen
+    assert {a.get_xscale() for a in made.axes} == {scale}
+    if scale == "log":  # plain numbers, which do not overlap
+        made.canvas.draw()
+        ticks = [t.get_text() for t in made.axes[0].get_xticklabels(which="both") if t.get_text()]
+        assert {"0.02", "0.05", "0.2"} < set(ticks)
+        assert all(float(tick) for tick in ticks)
+    assert made.get_suptitle() == ("friction [-] = 0.1" if len(values) > 2 else "")
+
+
+def test_whatever_may_be_swept_has_words():
+    assert set(draw.CONDITIONS) == set(SweepTable.model_fields)
+
+
+def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)
+        found = impact("ball", law=["fitted", "hertz"])
+        made = found.plot()
+    assert found.doubts == {"hertz": "elastic only"}
+    fast = impact("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
+    assert fast.doubts == {"fitted": "a/R of about 1.1 is beyond 0.6"}
+    curves = made.axes[2:]  # below the rig and the dent
+    assert curves[1].get_xlabel() == "time [us]"  # 0.03 ms: no tick has more than three digits
+    assert curves[1].get_xlim()[1] > 20.0
+    for axis in curves:
+        ours, theirs = axis.get_lines()
+        assert (ours.get_alpha(), theirs.get_alpha()) == (None, 0.5)
+        # as in the picture of a sweep
+        style = [(line.get_color(), line.get_linestyle()) for line in (ours, theirs)]
+        assert style == [(x["color"], x["ls"]) for x in draw.looks(["fitted", "hertz"]).values()]
+    assert curves[0].get_lines()[1].get_label() == "hertz: elastic only"
+    every = [(look["color"], look["ls"]) for look in draw.looks(map(str, range(45))).values()]
+    assert len(set(every)) == 45
