@@ -6,18 +6,16 @@ from .case import Case, standard_case
 from .cost import Forecast, pace_of_this_machine
 from .designs import DESIGNS, Design, design_named, distinct_cases
 from .publish import (
-    Difference,
-    Published,
     largest_difference,
     publish,
     published_designs,
     read_published,
 )
-from .quality import Quality, quality_of
+from .quality import quality_of
 from .read import digest_of_source, read_curves
-from .records import CaseRecord, Summary, UnloadingRecord
+from .records import CaseRecord
 from .rules import RULES
-from .run import Share, Status, Step, run_design, status_of
+from .run import Share, run_design, status_of
 from .store import Store
 
 __all__ = [
@@ -26,16 +24,9 @@ __all__ = [
     "Case",
     "CaseRecord",
     "Design",
-    "Difference",
     "Forecast",
-    "Published",
-    "Quality",
     "Share",
-    "Status",
-    "Step",
     "Store",
-    "Summary",
-    "UnloadingRecord",
     "design_named",
     "digest_of_source",
     "distinct_cases",

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from .. import fem
@@ -74,7 +75,7 @@ def publish(
     with locked(folder):
         finish_pending(folder)
         wanted = distinct_cases(design)
-        twice = wanted.keys() & _published_ids(folder)
+        twice = wanted.keys() & {key for file in _opened(folder) for key in texts_of(file, "id")}
         if twice:
             raise InputError(
                 f"{len(twice)} of its {len(wanted)} cases are published already",
@@ -111,11 +112,10 @@ def published_designs(folder: Path) -> list[Published]:
     Refused as `read_published`.
     """
     found: dict[str, list[tuple[int, Counter[str]]]] = {}
-    for path in _checked_parts(folder):
-        with opened_part(path) as file:
-            counts = Counter(texts_of(file, "status"))
-            version = int(file.attrs["numerics_version"])
-            found.setdefault(str(file.attrs["design"]), []).append((version, counts))
+    for file in _opened(folder):
+        counts = Counter(texts_of(file, "status"))
+        version = int(file.attrs["numerics_version"])
+        found.setdefault(str(file.attrs["design"]), []).append((version, counts))
     return [
         Published(
             design=name,
@@ -128,12 +128,10 @@ def published_designs(folder: Path) -> list[Published]:
     ]
 
 
-def _published_ids(folder: Path) -> set[str]:
-    ids: set[str] = set()
+def _opened(folder: Path) -> Iterator[h5py.File]:
     for path in _checked_parts(folder):
         with opened_part(path) as file:
-            ids.update(texts_of(file, "id"))
-    return ids
+            yield file
 
 
 def _checked_parts(folder: Path) -> list[Path]:

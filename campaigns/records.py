@@ -140,8 +140,7 @@ def _arrays(case: Tree, name: str, schema: dict[str, Dataset], path: Path) -> di
             raise InputError("missing", source=str(path), key=key)
         if group.units[column] != about.unit:
             raise InputError(
-                f"unit {group.units[column]!r}", source=str(path), key=key,
-                allowed=about.unit,
-            )  # fmt: skip
+                f"unit {group.units[column]!r}", source=str(path), key=key, allowed=about.unit
+            )
         out[column] = np.asarray(group.arrays[column], dtype=float)
     return out

@@ -7,6 +7,7 @@ raising: a computation that did not get there is a result with a reason, never a
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
@@ -85,6 +86,20 @@ class InputErrors(InputError):
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         """Cross to another process with every mistake."""
         return InputErrors, (self.errors,)
+
+
+Mistake = tuple[str, str, str]
+"""A mistake of a file that is named later: key, what is wrong, what is allowed."""
+
+
+def amiss(rows: Iterable[tuple[object, str, str, str]]) -> Iterator[Mistake]:
+    """Return the mistakes of a table: what a row begins with says whether it is one."""
+    return ((key, message, allowed) for wrong, key, message, allowed in rows if wrong)
+
+
+def in_file(found: Iterable[Mistake], source: str) -> tuple[InputError, ...]:
+    """Return the mistakes of a file as errors that name it."""
+    return tuple(InputError(m, source=source, key=k, allowed=allowed) for k, m, allowed in found)
 
 
 def missing_extra(what: str, extra: str) -> InputError:

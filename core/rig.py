@@ -386,10 +386,9 @@ class StrikerTable(BodyTable):
     def weighed(self) -> bool:
         """Whether the mass is stated; else it follows from radius and density of a sphere."""
         density = value_of(self.density_kg_m3)
-        return (
-            self.shape != "sphere"
-            or self.mass_kg.value != solid_mass(self.tip_radius_m.value, density)
-        )  # fmt: skip
+        return self.shape != "sphere" or self.mass_kg.value != solid_mass(
+            self.tip_radius_m.value, density
+        )
 
     @property
     def body_radius(self) -> float:
@@ -435,11 +434,11 @@ class EnvironmentTable(InputTable):
 
     fluid: str = ""
     """What is between the bodies, for example air."""
-    viscosity_Pa_s: NotNegative | None = None
+    viscosity_Pa_s: Positive | None = None
     """Its viscosity."""
-    density_kg_m3: NotNegative | None = None
+    density_kg_m3: Positive | None = None
     """Its density."""
-    pressure_Pa: NotNegative | None = None
+    pressure_Pa: Positive | None = None
     """Its pressure."""
     temperature_K: Temperature | None = None
     """Temperature of bodies and surroundings."""

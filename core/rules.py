@@ -53,10 +53,7 @@ class CoreRules:
         1e-6, "first plastic strain of a written law's table [-]",
         "a hundredth of what a test shows",
     )  # fmt: skip
-    flow_rows: int = rule(
-        200, "its rows [-]",
-        "28 a decade",
-    )  # fmt: skip
+    flow_rows: int = rule(200, "its rows [-]", "28 a decade")
 
 
 RULES = CoreRules()

@@ -87,9 +87,8 @@ def _press(loading, radius, unloading, residual, par, force, factors, load, bran
 
 
 @njit(
-    types.void(BRANCH, *3 * (_MATRIX,), VECTOR, VECTOR),
-    cache=True, _nrt=False, error_model="numpy",
-)  # fmt: skip
+    types.void(BRANCH, *3 * (_MATRIX,), VECTOR, VECTOR), cache=True, _nrt=False, error_model="numpy"
+)
 def _radii(radius, par, force, factors, depth, out):
     for i in range(len(depth)):
         out[i] = math.nan

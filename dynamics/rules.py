@@ -43,7 +43,7 @@ class ImpactRules:
         "error of a table: of F, a and energies over their own, of residual depths over the "
         "peak [-]",
         "restitution and times come out within ten times this of the integral",
-    )  # fmt: skip
+    )
     hertz_error: float = rule(0.003, "error of Hertz's force in a shallow contact [-]")
     hertz_sphere: tuple[float, ...] = rule(
         (0.45, 1.2), "and what a sphere, no half-space, adds to it, over x = a/R and x^2 [-]",
@@ -61,10 +61,7 @@ class ImpactRules:
         "chosen: a camera over a hundred frames",
     )  # fmt: skip
     stopped: float = rule(0.8, "part of a speed that a fluid may take for a fall to be one [-]")
-    by_eye: float = rule(
-        5.0, "tolerance of an angle set by eye [degrees]",
-        "as the thesis states",
-    )  # fmt: skip
+    by_eye: float = rule(5.0, "tolerance of an angle set by eye [degrees]", "as the thesis states")
     axial_modes: int = rule(6, "axial vibrations of a rod [-]")
     bending_modes: int = rule(9, "bending vibrations of a rod [-]")
     rod_loss: float = rule(
@@ -84,9 +81,8 @@ class ImpactRules:
         "two standard deviations",
     )  # fmt: skip
     support_span: float = rule(
-        10.0, "least span of the mass of a support [-]",
-        "a block, and the bench that it stands on",
-    )  # fmt: skip
+        10.0, "least span of the mass of a support [-]", "a block, and the bench that it stands on"
+    )
     block_mass: float = rule(
         0.1, "lightest block that is taken for a half-space without a word [kg]"
     )

@@ -55,7 +55,7 @@ from .material.return_map import (
     M,
     stresses,
     tangents,
-)  # fmt: skip
+)
 from .material.tensor import dot
 
 # limit: determinant of the deformation gradient below which an element is as good as inverted [-]

@@ -65,9 +65,8 @@ class FemRules:
     )
     ring_divisions: int = rule(4, "divisions of a fine ring [-]")
     ring_growth: float = rule(
-        1.25, "widths of neighbouring rings [-]",
-        "an abrupt change shows in the contact pressure",
-    )  # fmt: skip
+        1.25, "widths of neighbouring rings [-]", "an abrupt change shows in the contact pressure"
+    )
     residual: float = rule(
         1e-4, "accepted sum of residual forces over the contact force [-]",
         "a hundredth of it moves no force by 0.01 % and costs a quarter more",
@@ -77,7 +76,7 @@ class FemRules:
         "largest accepted next correction over the approach, where round-off rules the residual "
         "[-]",
         "Newton's corrections fall faster than it is estimated",
-    )  # fmt: skip
+    )
     hopeless_after: int = rule(
         8, "iterations after which a residual that has not halved will not converge [-]"
     )
@@ -88,14 +87,11 @@ class FemRules:
         "power of the approach by which the last increment moves outwards with the contact [-]",
         "the radius grows by the power 0.5, but values between rings cost what they bring: fewest "
         "iterations",
-    )  # fmt: skip
+    )
     deepest: float = rule(0.5, "largest approach that can be asked for [R]")
     gap_edges: int = rule(5, "open surface elements that the fit of the gap looks at [-]")
     edge_candidates: int = rule(161, "places of the contact edge that the fit of the gap tries [-]")
-    steps_beyond: int = rule(
-        4, "steps past the last depth [-]",
-        "the fit there is then two-sided",
-    )  # fmt: skip
+    steps_beyond: int = rule(4, "steps past the last depth [-]", "the fit there is then two-sided")
     ripple_reach: float = rule(0.36, "reach of the fit to either side in ln approach [-]")
     ripple_degree: int = rule(3, "degree of the curve within the reach [-]")
     harmonics: int = rule(2, "harmonics of the part that repeats from ring to ring [-]")

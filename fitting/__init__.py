@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from .fit import FormFit, fit_tables
-from .laws import FittedLaws, fit_laws
+from .fit import fit_tables
 from .prediction import Errors
-from .table import ResidualTable, Table, read_sources, tables_of
+from .table import read_sources, tables_of
 
 __all__ = [
     "Errors",
-    "FormFit",
-    "FittedLaws",
-    "ResidualTable",
-    "Table",
-    "fit_laws",
     "fit_tables",
     "read_sources",
     "tables_of",

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from ..core.errors import InputError
 from ..core.inputs.added import LAWS as LAW_GROUP
 from ..core.inputs.added import names_added
-from .base import ContactLaw, Domain, DomainWarning, Kernels
+from .base import ContactLaw, DomainWarning
 from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
 from .law_file import is_file, read_law
@@ -72,10 +72,7 @@ __all__ = [
     "UNAVAILABLE",
     "Uncertainty",
     "ContactLaw",
-    "Domain",
     "DomainWarning",
-    "Kernels",
-    "Shelf",
     "critical_depth",
     "critical_force",
     "law_named",

@@ -239,9 +239,7 @@ def coordinates_of(e: Equivalent) -> tuple[Array, Array]:
             [a, (n - 0.2) / 0.15, (np.log(stiff) - 5.0) / 1.2, (share - 0.5) / 0.22, far], axis=-1
         )
 
-    return (
-        of(e.sphere.n, numbers.j_s, numbers.x_s), of(e.flat.n, numbers.j_f, 1.0 - numbers.x_s),
-    )  # fmt: skip
+    return (of(e.sphere.n, numbers.j_s, numbers.x_s), of(e.flat.n, numbers.j_f, 1.0 - numbers.x_s))
 
 
 def features_of(e: Equivalent, low: Array, high: Array) -> Array:

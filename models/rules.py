@@ -31,27 +31,21 @@ class ModelRules:
     )
     correction_degree: int = rule(2, "degree of the correction [-]")
     least_step: float = rule(
-        0.01, "step of ln Delta from point to point at the least [-]",
-        "a quarter of the mean one",
-    )  # fmt: skip
-    law_first: float = rule(
-        0.01,
-        "first depth of such a law [critical depths]",
-        "elastic",
-    )  # fmt: skip
+        0.01, "step of ln Delta from point to point at the least [-]", "a quarter of the mean one"
+    )
+    law_first: float = rule(0.01, "first depth of such a law [critical depths]", "elastic")
     law_last: float = rule(0.6, "its last depth [R]")
     rounded: float = rule(2e-3, "width in ln F where it comes down to the least force [-]")
     flow_rounds: int = rule(14, "rounds for the sphere's part of the flow [-]")
     radius_rounds: int = rule(
-        3, "rounds of the contact radius in each [-]",
-        "they go on from the last",
-    )  # fmt: skip
+        3, "rounds of the contact radius in each [-]", "they go on from the last"
+    )
     points: int = rule(240, "points of a law that is a table, even in ln depth [-]")
     joining_depths: tuple[float, ...] = rule(
         (0.02, 0.05, 0.1, 0.2, 0.4, 0.5, 0.6),
         "depths over the critical one at which such a law may leave Hertz's [-]",
         "yield begins at 1",
-    )  # fmt: skip
+    )
     joined: float = rule(
         0.8, "depth over the critical one from which the solve alone counts [-]",
         "yield begins at 1",

@@ -96,9 +96,8 @@ def table_from(content: object, *, source: str, name: str) -> TableLaw:
             raise InputError("falls", source=source, key=f"{key}.depth", allowed="rising depths")
     if len(curve.depth) < 2:
         raise InputError(
-            f"{len(curve.depth)} depths", source=source, key="loading",
-            allowed="2 or more",
-        )  # fmt: skip
+            f"{len(curve.depth)} depths", source=source, key="loading", allowed="2 or more"
+        )
     table = PairTable(Pair(sphere, flat, found.radius_m), curve, turns)
     if len(turns.depth) and turns.depth[0] <= table.yields_at:
         raise InputError(

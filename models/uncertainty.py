@@ -17,9 +17,7 @@ from ..core.arrays import Array
 from .closed_form import PairNumbers, plastic_depth, small_radius_at
 from .rules import RULES
 
-FEATURES = (
-    "one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share", "unlike",
-)  # fmt: skip
+FEATURES = ("one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share", "unlike")
 """What a standard deviation depends on; see `features_of`."""
 
 LEAST = RULES.least_error

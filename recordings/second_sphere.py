@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.errors import InputError
+from ..core.errors import InputError, in_file
 from ..core.inputs.second_sphere import StruckSphere, second_sphere_mistakes, struck_sphere
 from .rules import RULES
 from .trials import NORMAL
@@ -22,7 +22,7 @@ def mistakes_of(found: RecordingSet) -> Iterator[InputError]:
     """Yield what is wrong with the second sphere of a set, or beside it."""
     source = str(found.folder / "set.toml") if found.folder else ""
     setup = found.setup
-    wrong = list(second_sphere_mistakes(setup.target, setup.strikers, source=source))
+    wrong = in_file(second_sphere_mistakes(setup.target, setup.strikers), source)
     yield from wrong
     second = struck_sphere(setup.target)
     if wrong or second is None:

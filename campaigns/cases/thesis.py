@@ -18,21 +18,18 @@ _SECOND = 18  # as many more in its second part
 
 def smoke() -> tuple[Case, ...]:
     """Cases 1, 3 and 5 of Table 2.1 at four strength ratios."""
-    cases = []
-    for number in (1, 3, 5):
-        for ratio in (0.1, 1.0, 1.5, 10.0):
-            cases.append(
-                standard_case(
-                    f"table-2.1-case-{number}-Sy*-{ratio:g}",
-                    table_2_1(number, ratio),
-                    deepest=0.04,
-                    n_depths=40,
-                    unload_w=(5.0, 20.0),
-                    unload_depths=(0.01, 0.04),
-                    accuracy=fem.Accuracy.smoke(),
-                )
-            )
-    return tuple(cases)
+    return tuple(
+        standard_case(
+            f"table-2.1-case-{number}-Sy*-{ratio:g}",
+            table_2_1(number, ratio),
+            deepest=0.04,
+            n_depths=40,
+            unload_w=(5.0, 20.0),
+            unload_depths=(0.01, 0.04),
+            accuracy=fem.Accuracy.smoke(),
+        )
+        for number, ratio in product((1, 3, 5), (0.1, 1.0, 1.5, 10.0))
+    )
 
 
 def coarse_to_fine(

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..errors import InputError
+from ..errors import InputError, Mistake, amiss
 from ..rig import StrikerTable, TargetTable, value_of
 
 
@@ -94,9 +94,9 @@ def struck_sphere(target: TargetTable) -> StruckSphere | None:
 
 
 def second_sphere_mistakes(
-    target: TargetTable, strikers: Mapping[str, StrikerTable], *, source: str
-) -> Iterator[InputError]:
-    """Yield what a second sphere needs, and what only a flat has, as lines that name `source`."""
+    target: TargetTable, strikers: Mapping[str, StrikerTable]
+) -> Iterator[Mistake]:
+    """Return what a second sphere needs, and what only a flat has."""
     two = target.shape == "sphere"
     free = two and target.mass_kg is not None
     flat_only = 'with target.shape = "sphere"'
@@ -122,6 +122,4 @@ def second_sphere_mistakes(
             (table.inertia_kg_m2 is not None, f"{key}.inertia_kg_m2", "with a second sphere",
              "left out: both are solid"),
         ]  # fmt: skip
-    for amiss, key, message, allowed in wrong:
-        if amiss:
-            yield InputError(message, source=source, key=key, allowed=allowed)
+    return amiss(wrong)

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, field_validator
 
-from ...core.errors import InputError, InputErrors
+from ...core.errors import InputError, InputErrors, in_file
 from ...core.inputs.ranges import LEAST_KNOWN, SPEEDS, span
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
@@ -130,12 +130,9 @@ def _check_striker(content: Mapping[str, Any], source: str) -> None:
     known = set(FlowingStriker.model_fields) - set(_RodTable.model_fields)
     idle = [name for name in table if name in known] if isinstance(table, dict) else []
     allowed = "left out: the rod is rigid; `dentscope impact` takes it"
-    errors = [
-        InputError("does nothing here", source=source, key=f"striker.{name}", allowed=allowed)
-        for name in idle
-    ]
-    if errors:
-        raise InputErrors(tuple(errors))
+    told = ((f"striker.{name}", "does nothing here", allowed) for name in idle)
+    if errors := in_file(told, source):
+        raise InputErrors(errors)
 
 
 def _deviations(table: _RodTable, measured: MeasuredScar) -> dict[str, float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, ConfigDict, Field, create_model, model_validator
 
-from ...core.errors import InputError
+from ...core.errors import Mistake
 from ...core.inputs.added import MECHANISMS as ADDED
 from ...core.inputs.added import names_added
 from ...core.inputs.ranges import Within
@@ -180,41 +180,29 @@ def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Va
     return {**known} | {name: number.value for name, number in given.items() if number is not None}
 
 
-def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
+def mistakes_of(file: SetupFile) -> Iterator[Mistake]:
     """Yield what the single keys of `[mechanisms]` cannot show."""
-    tables = asked_of(file)
+    tables, one = asked_of(file), "one of the two"
     for name, (other, given) in _ALONE.items():
         if name in tables and given(file):
-            yield InputError(
-                f"given beside {other}, which says it already", source=source,
-                key=f"mechanisms.{name}", allowed="one of the two",
-            )  # fmt: skip
+            yield f"mechanisms.{name}", f"given beside {other}, which says it already", one
     if {"rod-longitudinal-waves", "rod-flexural-vibration"} <= tables.keys():
-        yield InputError(
-            "given beside mechanisms.rod-flexural-vibration, which rings along the axis as well",
-            source=source, key="mechanisms.rod-longitudinal-waves", allowed="one of the two",
-        )  # fmt: skip
+        told = "given beside mechanisms.rod-flexural-vibration, which rings along the axis as well"
+        yield "mechanisms.rod-longitudinal-waves", told, one
     loss = getattr(tables.get("impact-speed-loss"), "loss_growth", None)
     if loss is not None and not file.sweep.drop_height_m:
-        yield InputError(
-            f"{loss.value:g} does nothing at one height", source=source,
-            key="mechanisms.impact-speed-loss.loss_growth", allowed="with sweep.drop_height_m",
-        )  # fmt: skip
+        told = f"{loss.value:g} does nothing at one height"
+        yield "mechanisms.impact-speed-loss.loss_growth", told, "with sweep.drop_height_m"
     asked = asked_in(file)
     for m in asked.mechanisms:
-        size = m.parameters[0]
-        sized = size.name in m.stated(asked.around)  # by the rig: 0 is told of as idle
-        if asked.constants[m.name][size.name] == size.neutral and not sized:
+        size, known = m.parameters[0], m.stated(asked.around)
+        # by the rig: 0 is told of as idle
+        if asked.constants[m.name][size.name] == size.neutral and size.name not in known:
             stated = getattr(tables[m.name], size.name) is not None
             beside = f"; or {' and '.join(m.reads)}" if m.reads and not stated else ""
-            yield InputError(
-                f"{size.neutral:g} does nothing here" if stated else "missing", source=source,
-                key=f"mechanisms.{m.name}.{size.name}",
-                allowed=f"{size.low:g} to {size.high:g} [{size.unit}]{beside}",
-            )  # fmt: skip
-        for name in m.stated(asked.around):
+            told = f"{size.neutral:g} does nothing here" if stated else "missing"
+            allowed = f"{size.low:g} to {size.high:g} [{size.unit}]{beside}"
+            yield f"mechanisms.{m.name}.{size.name}", told, allowed
+        for name in known:
             if getattr(tables[m.name], name) is not None:
-                yield InputError(
-                    f"given beside {' and '.join(m.reads)}", source=source,
-                    key=f"mechanisms.{m.name}.{name}", allowed="one of the two",
-                )  # fmt: skip
+                yield f"mechanisms.{m.name}.{name}", f"given beside {' and '.join(m.reads)}", one

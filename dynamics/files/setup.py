@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
 
-from ...core.errors import InputError, InputErrors
+from ...core.errors import InputError, InputErrors, Mistake, amiss, in_file
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.inputs.second_sphere import second_sphere_mistakes
@@ -32,6 +33,7 @@ from ...models.choose import follows_flow
 from ..batch import Change, impacts, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
+from ..mechanisms.approach import Tilt
 from ..mechanisms.asked import Asked
 from ..result import Impact
 from ..rules import RULES
@@ -249,15 +251,26 @@ class Setup:
             )  # fmt: skip
 
     def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
+        for rig in (self, *self.rigs):
+            rig._check_tilt(laws[0])
         never = self._never(laws) if self.asked else {}
         for rig in self.rigs if never else ():  # a number of the sweep may let it act
             never = {name: why for name, why in never.items() if name in rig._never(laws)}
         if never:
-            raise InputErrors(tuple(
-                InputError(never[name], source=self.source, key=f"mechanisms.{name}",
-                           allowed="left out")
-                for name in sorted(never)
-            ))  # fmt: skip
+            told = ((f"mechanisms.{name}", never[name], "left out") for name in sorted(never))
+            raise InputErrors(in_file(told, self.source))
+
+    def _check_tilt(self, law: ContactLaw) -> None:
+        """Refuse what would be cut in silence."""
+        if (tilt := self.asked.constants.get("tilt")) is None:
+            return
+        scenes = swept_scenes(self.sweep, self.plain(law), stated=self.stated)
+        if any(Tilt.cut(scene, tilt) for scene in scenes):
+            raise InputError(
+                f"{tilt['tilt_deg']:g} turns the striker onto the flat", source=self.source,
+                key="mechanisms.tilt.tilt_deg",
+                allowed="what leaves a rod 0.02 rad and a ball 0.001 m/s towards it",
+            )  # fmt: skip
 
     def _never(self, laws: Sequence[ContactLaw]) -> dict[str, str]:
         """Return why, for the mechanisms that act by none of the laws, in no blow of this rig.
@@ -329,15 +342,11 @@ def setup_of(content: dict[str, Any], *, source: str) -> Setup:
 
 def _alone(content: dict[str, Any], *, source: str, rigs: int = 1) -> Setup:
     """One rig, of `rigs` of its sweep."""
-    known = tuple(taken_elsewhere(content, source=source))
-    if known:
+    if known := in_file(taken_elsewhere(content), source):
         raise InputErrors(known)
     found = parse_model({**content, **added_in(content, source=source)}, SetupFile, source=source)
-    errors = (
-        *_mistakes(found, source), *not_taken(found, content, source=source),
-        *mistakes_in(found.sweep, source, rigs=rigs),
-    )  # fmt: skip
-    if errors:
+    parts = _mistakes(found), not_taken(found, content), mistakes_in(found.sweep, rigs=rigs)
+    if errors := in_file(chain.from_iterable(parts), source):
         raise InputErrors(errors)
     impact = found.impact
     flight = math.nan if impact.flight_s is None else impact.flight_s
@@ -364,75 +373,67 @@ def _laws(found: SetupFile) -> tuple[str, ...]:
     return (FOLLOWING, *laws) if curves_in(found) and not chosen else laws
 
 
-def _mistakes(found: SetupFile, source: str) -> list[InputError]:
-    """What the single keys cannot show."""
-    errors = []
+def _mistakes(found: SetupFile) -> Iterator[Mistake]:
+    """Yield what the single keys cannot show."""
+    impact, target, sweep = found.impact, found.target, found.sweep
+    names, striker = ", ".join(found.strikers), found.strikers.get(found.striker)
+    speed, height, on = impact.impact_speed_m_s, impact.drop_height_m, impact.support
+    weighed = striker is not None and striker.inertia_kg_m2 is not None
+    waves = on in ("plate", "half-space", "rod")
+    yield from amiss((
+        (not impact.striker and len(found.strikers) > 1, "impact.striker", "missing",
+         f"one of {names}"),
+        (striker is None, "impact.striker", f"no striker {impact.striker!r}", f"one of {names}"),
+        ((speed is None) == (height is None), "impact.impact_speed_m_s",
+         "missing" if speed is None else "given beside impact.drop_height_m",
+         "this or impact.drop_height_m, one of the two"),
+        *(
+            (falls and found.gravity_m_s2.value == 0.0, f"{table}.drop_height_m",
+             "nothing falls where gravity_m_s2 is 0", "impact_speed_m_s")
+            for table, falls in (("impact", height is not None), ("sweep", sweep.drop_height_m))
+        ),
+        (on == "sprung" and target.support_mass_kg is None, "target.support_mass_kg", "missing",
+         "the mass of a sprung support"),
+        (on == "plate" and target.thickness_m is None, "target.thickness_m", "missing",
+         "the thickness of the plate"),
+        (on == "rod" and not impact.support_radius_m > 0.0, "impact.support_radius_m", "missing",
+         "the radius of the rod whose end is struck"),
+        (waves and target.density_kg_m3 is None, "target.density_kg_m3", "missing",
+         "the density of a support that carries waves off"),
+        (sweep.mass_kg and weighed, "sweep.mass_kg",
+         f"given beside strikers.{found.striker}.inertia_kg_m2",
+         "one of the two: the inertia follows a swept mass"),
+    ))  # fmt: skip
+    if striker is not None:
+        yield from _of_a_slanted_sphere(found, striker)
+    yield from _of_a_second_sphere(found)
+    if striker is not None:
+        yield from mistakes_of(found)
 
-    def add(key: str, message: str, allowed: str) -> None:
-        errors.append(InputError(message, source=source, key=key, allowed=allowed))
 
-    impact, names = found.impact, ", ".join(found.strikers)
-    if not impact.striker and len(found.strikers) > 1:
-        add("impact.striker", "missing", f"one of {names}")
-    if impact.striker and impact.striker not in found.strikers:
-        add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
-    speed, height = impact.impact_speed_m_s, impact.drop_height_m
-    if (speed is None) == (height is None):
-        told = "missing" if speed is None else "given beside impact.drop_height_m"
-        add("impact.impact_speed_m_s", told, "this or impact.drop_height_m, one of the two")
-    if found.gravity_m_s2.value == 0.0:
-        for table, fall in (("impact", height), ("sweep", found.sweep.drop_height_m or None)):
-            if fall is not None:
-                add(f"{table}.drop_height_m", "nothing falls where gravity_m_s2 is 0",
-                    "impact_speed_m_s")  # fmt: skip
-    if impact.support == "sprung" and found.target.support_mass_kg is None:
-        add("target.support_mass_kg", "missing", "the mass of a sprung support")
-    if impact.support == "plate" and found.target.thickness_m is None:
-        add("target.thickness_m", "missing", "the thickness of the plate")
-    if impact.support == "rod" and not impact.support_radius_m > 0.0:
-        add("impact.support_radius_m", "missing", "the radius of the rod whose end is struck")
-    if impact.support in ("plate", "half-space", "rod") and found.target.density_kg_m3 is None:
-        add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
-    striker = found.strikers.get(found.striker)
-    if found.sweep.mass_kg and striker is not None and striker.inertia_kg_m2 is not None:
-        add("sweep.mass_kg", f"given beside strikers.{found.striker}.inertia_kg_m2",
-            "one of the two: the inertia follows a swept mass")  # fmt: skip
-    errors += [*_of_a_slanted_sphere(found, source), *_of_a_second_sphere(found, source)]
-    if found.striker in found.strikers:
-        errors += mistakes_of(found, source)
-    return errors
-
-
-def _of_a_slanted_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
+def _of_a_slanted_sphere(found: SetupFile, striker: StrikerTable) -> Iterator[Mistake]:
     """Yield a speed along the flat that is given beside the angle which says it."""
-    striker, impact, sweep = found.strikers.get(found.striker), found.impact, found.sweep
-    if striker is None or striker.shape == "rod":
-        return
-    key = "approach_tangential_m_s"
-    along = {
-        "impact": impact.approach_tangential_m_s is not None,
-        "sweep": bool(sweep.swept.get(key)),
-    }
-    for table, given in along.items():
-        if given and (sweep.angle_deg or impact.angle_deg != 90.0):
-            yield InputError(
-                "given beside angle_deg", source=source, key=f"{table}.{key}",
-                allowed="one of the two: the angle of a sphere's velocity says its speed along",
-            )  # fmt: skip
+    impact, sweep, key = found.impact, found.sweep, "approach_tangential_m_s"
+    slanted = striker.shape != "rod" and (sweep.angle_deg or impact.angle_deg != 90.0)
+    for table, along in (
+        ("impact", impact.approach_tangential_m_s),
+        ("sweep", sweep.swept.get(key)),
+    ):
+        if slanted and along is not None:
+            allowed = "one of the two: the angle of a sphere's velocity says its speed along"
+            yield f"{table}.{key}", "given beside angle_deg", allowed
 
 
-def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
+def _of_a_second_sphere(found: SetupFile) -> Iterator[Mistake]:
     """Yield what a second sphere needs, and what only a flat has."""
     used = {k: t for k, t in found.strikers.items() if k == found.striker}
-    yield from second_sphere_mistakes(found.target, used, source=source)
-    two = found.target.shape == "sphere"
-    wrong = (
-        (found.impact.support != "rigid", "impact.support", repr(found.impact.support),
-         '"rigid": a second sphere is held, or free with target.mass_kg'),
-        (found.sweep.mass_kg, "sweep.mass_kg", "with two spheres", "strikers.NAME.mass_kg"),
-        (found.sweep.approach_spin_rad_s, "sweep.approach_spin_rad_s", "with two spheres",
-         "impact.approach_spin_rad_s"),
-    )  # fmt: skip
-    for amiss, key, message, allowed in wrong:
-        if two and amiss:
-            yield InputError(message, source=source, key=key, allowed=allowed)
+    yield from second_sphere_mistakes(found.target, used)
+    impact, sweep, two = found.impact, found.sweep, "with two spheres"
+    if found.target.shape == "sphere":
+        yield from amiss((
+            (impact.support != "rigid", "impact.support", repr(impact.support),
+             '"rigid": a second sphere is held, or free with target.mass_kg'),
+            (sweep.mass_kg, "sweep.mass_kg", two, "strikers.NAME.mass_kg"),
+            (sweep.approach_spin_rad_s, "sweep.approach_spin_rad_s", two,
+             "impact.approach_spin_rad_s"),
+        ))  # fmt: skip

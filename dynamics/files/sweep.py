@@ -17,7 +17,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 
 from ...core.approach import speeds_at_touch
 from ...core.arrays import Array
-from ...core.errors import InputError, InputErrors
+from ...core.errors import InputErrors, Mistake, amiss
 from ...core.inputs.toml_input import InputTable, parse_model
 from ...core.rig import Friction, Height, Mass, Quantity, Speed
 from ..batch import scenes_over
@@ -168,19 +168,14 @@ def with_value(content: Any, path: tuple[str, ...], value: float) -> dict[str, A
     return {**table, name: with_value(table.get(name), tuple(inner), value) if inner else value}
 
 
-def mistakes_in(sweep: SweepTable, source: str, *, rigs: int) -> list[InputError]:
-    """What the single keys cannot show."""
+def mistakes_in(sweep: SweepTable, *, rigs: int) -> Iterator[Mistake]:
+    """Return what the single keys cannot show."""
     both, count = sweep.impact_speed_m_s and sweep.drop_height_m, max(sweep.count, 1) * rigs
-    wrong = (
-        (both, "both speed and height", "impact_speed_m_s or drop_height_m"),
-        (count > _COMBINATIONS, f"{count} combinations", f"up to {_COMBINATIONS}"),
-        (rigs > _RIGS, f"{rigs} combinations of numbers of the file", f"up to {_RIGS}"),
-    )
-    return [
-        InputError(message, source=source, key="sweep", allowed=allowed)
-        for amiss, message, allowed in wrong
-        if amiss
-    ]
+    return amiss((
+        (both, "sweep", "both speed and height", "impact_speed_m_s or drop_height_m"),
+        (count > _COMBINATIONS, "sweep", f"{count} combinations", f"up to {_COMBINATIONS}"),
+        (rigs > _RIGS, "sweep", f"{rigs} combinations of numbers of the file", f"up to {_RIGS}"),
+    ))  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
 
 import numpy as np
 
@@ -26,8 +25,8 @@ class Adhesion(Mechanism):
             "Thornton and Ning, Powder Technol. 99 (1998) 154; clean metals up to 2 J/m^2",
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
-    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
+    direction = {"restitution": -1}
+    rests_on = ("target", "striker")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the work of parting with the energy of the slowest impact."""

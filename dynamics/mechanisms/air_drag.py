@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
@@ -48,10 +47,10 @@ class AirDrag(Mechanism):
             "bounces far from it", nodes=5,
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
-    form: ClassVar[float] = 0.05
-    in_flight: ClassVar[bool] = True
-    reads: ClassVar[tuple[str, ...]] = tuple(
+    direction = {"restitution": -1, "permanent_depth_m": -1}
+    form = 0.05
+    in_flight = True
+    reads = tuple(
         f"environment.{name}"
         for name in ("fluid", "viscosity_Pa_s", "density_kg_m3", "pressure_Pa", "temperature_K")
     )

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..rules import RULES
 from ..scene import Scene
 from .arithmetic import is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+# limit: least angle that a tilt leaves a rod [rad]: grids go beyond what can be
+_FLATTEST = 0.02
+# limit: least normal speed that it leaves a ball [m/s]: likewise
+_SLOWEST = 1e-3
 
 
 class ImpactSpeedLoss(Mechanism):
@@ -30,9 +34,9 @@ class ImpactSpeedLoss(Mechanism):
             "0 for a guide, 1 for air drag, -1/2 for a release that takes a fixed speed", nodes=4,
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"permanent_depth_m": -1, "peak_force_N": -1}
-    form: ClassVar[float] = 0.05
-    in_flight: ClassVar[bool] = True
+    direction = {"permanent_depth_m": -1, "peak_force_N": -1}
+    form = 0.05
+    in_flight = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs speeds computed from heights."""
@@ -68,9 +72,9 @@ class Tilt(Mechanism):
             literature=Literature(5.0, "the tolerance that the thesis states"),
         ),
     )  # fmt: skip
-    form: ClassVar[float] = 0.05
-    in_flight: ClassVar[bool] = True
-    aslant: ClassVar[bool] = True
+    form = 0.05
+    in_flight = True
+    aslant = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""
@@ -84,16 +88,25 @@ class Tilt(Mechanism):
             return self.parameters
         return (replace(self.parameters[0], low=0.5, high=RULES.by_eye),)
 
+    @staticmethod
+    def cut(scene: Scene, values: Values) -> bool:
+        """Whether it would turn a rod, or a ball's way, onto the flat: `attach` stops short."""
+        turn, a = math.radians(values["tilt_deg"]), scene.approach
+        if scene.striker.length > 0.0:
+            return a.angle + turn < _FLATTEST
+        left = a.speed * math.cos(turn) - a.tangential * math.sin(turn)
+        return a.tangential != 0.0 and left < _SLOWEST
+
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""
         turn = math.radians(values["tilt_deg"])
         old = scene.approach
         if scene.striker.length > 0.0:
             angle = 0.5 * math.pi - abs(0.5 * math.pi - old.angle - turn)
-            return scene.with_(approach=replace(old, angle=max(angle, 0.02)))
+            return scene.with_(approach=replace(old, angle=max(angle, _FLATTEST)))
         if old.tangential == 0.0:
             return scene
         cosine, sine = math.cos(turn), math.sin(turn)
         speed = old.speed * cosine - old.tangential * sine
         along = old.tangential * cosine + old.speed * sine
-        return scene.with_(approach=replace(old, speed=max(speed, 1e-3), tangential=along))
+        return scene.with_(approach=replace(old, speed=max(speed, _SLOWEST), tangential=along))

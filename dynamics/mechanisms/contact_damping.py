@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..scene import Scene
 from ..strength import strength_table
@@ -34,8 +33,8 @@ class ContactDamping(Mechanism):
             literature=Literature(0.0, "Hunt and Crossley 1975"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
-    form: ClassVar[float] = 0.25
+    direction = {"restitution": -1, "permanent_depth_m": -1}
+    form = 0.25
     """A force in proportion to the load against one in proportion to the width, fitted to each
     other over a decade of speed: 2 to 8 % of the effect in restitution and depth, 25 to 45 % in
     contact time and peak force."""

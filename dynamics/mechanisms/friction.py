@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..scene import Scene
 from .arithmetic import is_oblique
@@ -27,7 +26,7 @@ class VelocityDependentFriction(SlidingMechanism):
     name = "velocity-dependent-friction"
     title = "friction depends on the sliding speed"
     equations = "mu(v) = mu_d + (mu_s - mu_d) exp(-v/v_0), stated mu = mu_d^(1-w) mu_s^w"
-    aslant: ClassVar[bool] = True
+    aslant = True
     parameters = (
         Parameter(
             "static_over_dynamic", "-", 0.3, 3.0, "log", 1.0,
@@ -63,7 +62,7 @@ class PloughingFriction(SlidingMechanism):
     name = "ploughing-friction"
     title = "the tip ploughs"
     equations = "mu + s (4/(3 pi)) a/R"
-    aslant: ClassVar[bool] = True
+    aslant = True
     parameters = (
         Parameter(
             "ploughing_scale", "-", 0.3, 5.0, "log", 0.0,
@@ -71,7 +70,7 @@ class PloughingFriction(SlidingMechanism):
             literature=Literature(1.0, "the front of a rigid sphere, Bowden and Tabor"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"friction_impulse_ratio": 1, "sliding_length_m": -1}
+    direction = {"friction_impulse_ratio": 1, "sliding_length_m": -1}
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import ClassVar
 
 from ...core.material import Material
 from ..rules import RULES
@@ -37,8 +36,8 @@ class HalfSpaceWaves(Mechanism):
             literature=Literature(1.0, "the theory: Zener 1941, Hunter 1957"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
-    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
+    direction = {"restitution": -1}
+    rests_on = ("target", "striker")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a flat."""

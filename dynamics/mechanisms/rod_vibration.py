@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import ClassVar
 
 from ...core.material import Material
 from ..beam import Modes, axial_frequencies, rod_modes
@@ -29,9 +28,9 @@ class _Ringing(Mechanism):
     """A rod that is no rigid body: its modes take energy and give it back."""
 
     parameters = (_PARTICIPATION,)
-    form: ClassVar[float] = 0.05
-    jumps: ClassVar[bool] = True
-    rests_on: ClassVar[tuple[str, ...]] = ("striker",)
+    form = 0.05
+    jumps = True
+    rests_on = ("striker",)
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod."""
@@ -60,7 +59,7 @@ class RodLongitudinalWaves(_Ringing):
     equations = (
         "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
     )
-    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1}
+    direction = {"contact_time_s": 1}
 
     def modes(self, striker: Striker, body: Material) -> Modes:
         """Return the lowest axial modes."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
@@ -86,9 +85,9 @@ class Roughness(Mechanism):
             literature=Literature(1.0, "asperities that flow"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
-    static: ClassVar[bool] = True
-    reads: ClassVar[tuple[str, ...]] = ("Ra_m",)
+    direction = {"contact_time_s": 1, "peak_force_N": -1}
+    static = True
+    reads = ("Ra_m",)
 
     def stated(self, around: Surroundings) -> Values:
         """Heights that fall off exponentially with the mean sigma have Ra = 2 sigma/e."""

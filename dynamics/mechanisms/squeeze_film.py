@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -41,9 +40,9 @@ class SqueezeFilm(Mechanism):
             "31 (1988) 1324)", nodes=7,
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
-    mutual: ClassVar[bool] = True
-    reads: ClassVar[tuple[str, ...]] = ("environment.fluid", "environment.viscosity_Pa_s")
+    direction = {"restitution": -1, "permanent_depth_m": -1}
+    mutual = True
+    reads = ("environment.fluid", "environment.viscosity_Pa_s")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Air and vacuum are too thin."""

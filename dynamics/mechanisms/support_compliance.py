@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..rules import RULES
 from ..scene import Scene, Support
@@ -37,8 +36,8 @@ class SupportCompliance(Mechanism):
             literature=Literature(0.03, "a bolted frame"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
-    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
+    direction = {"restitution": -1, "permanent_depth_m": -1}
+    rests_on = ("target", "striker")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a support."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import ClassVar
 
 from ..scene import Scene
 from .arithmetic import is_oblique
@@ -28,9 +27,9 @@ class TangentialCompliance(SlidingMechanism):
     )  # fmt: skip
     # of the radius a: at one depth a^2/(2 R delta) falls from 1.43 without hardening to 1.15 at an
     # exponent of 0.2 (Biwa and Storakers, J. Mech. Phys. Solids 43 (1995) 1303): 10 % in a
-    scale_error: ClassVar[float] = 0.05
-    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
-    aslant: ClassVar[bool] = True
+    scale_error = 0.05
+    rests_on = ("target", "striker")
+    aslant = True
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from ..scene import Scene
 from .arithmetic import needs_yielding_law
@@ -33,14 +32,14 @@ class TruncatedTip(Mechanism):
             literature=Literature(1.0, "a tip that reaches the rod's side"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {
+    direction = {
         "contact_time_s": -1,
         "permanent_depth_m": -1,
         "peak_force_N": 1,
     }
 
-    static: ClassVar[bool] = True
-    law_error: ClassVar[float] = 2.5
+    static = True
+    law_error = 2.5
     """The law is that of a sphere, pressed deeper by the missing cap; about 5 % of the force."""
 
     def applies(self, situations: Sequence[Situation]) -> str:

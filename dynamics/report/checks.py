@@ -47,6 +47,9 @@ _ROD_OFF = 0.05
 # limit: restitution from which it is told to be above 1 [-]; half of its last digit shown
 _ABOVE_ONE = 1.0 + 5e-4
 
+# limit: coefficient of friction that is asked back [-]: above those of clean metals in air
+_RUBS = 2.0
+
 # limit: rho v^2 over strength from which inertia of the metal is told of [-]
 _DAMAGE = 1.0
 # limit: part of the approach's speed below which a sphere is at rest [-]: round-off
@@ -211,6 +214,9 @@ def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             "dentscope case solves the contact with it"
         )
     elif not straight and scene.friction.mu > 0.0:
+        if scene.friction.mu > _RUBS:
+            mu = scene.friction.mu
+            yield f"friction, {mu:g}, is more than metals have; {mu:g} % would be {mu / 100.0:g}"
         without = repeated(
             setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
         )

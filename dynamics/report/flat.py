@@ -132,9 +132,8 @@ def _struck_rod(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
 def with_waves(setup: Setup, scene: Scene) -> Impact | None:
     """The blow with waves into a plate of the flat's thickness, else a half-space."""
     flat, support = scene.pair.flat, setup.file.impact.support
-    asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
     other = support not in ("rigid", "plate") or setup.second is not None
-    if asked or other or flat.rigid or math.isnan(flat.density):
+    if _asked(setup) or other or flat.rigid or math.isnan(flat.density):
         return None
     # Zener's plate is the thin one; this one has its thickness
     without = scene.with_(support=replace(scene.support, plate_mobility=0.0))
@@ -142,7 +141,13 @@ def with_waves(setup: Setup, scene: Scene) -> Impact | None:
     return repeated(setup, HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick))
 
 
+def _asked(setup: Setup) -> bool:
+    return any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
+
+
 def _waves(setup: Setup, scene: Scene, found: Impact, lacks: Mapping[str, Lack]) -> Iterator[str]:
+    if setup.file.target.thickness_m and _asked(setup) and math.isfinite(scene.support.mass):
+        yield "half-space-waves: the flat moves as a block on its support, and does not bend"
     if "plate" in lacks:
         yield lacks["plate"].told(found)
     elif (waves := with_waves(setup, scene)) is not None:

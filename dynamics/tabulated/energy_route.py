@@ -39,7 +39,7 @@ from .energy_table import (
     SPHERE,
     TERMS,
     energy_table,
-)  # fmt: skip
+)
 
 GRAVITY_LIMIT = RULES.gravity_limit
 """Largest work of gravity over the work of a branch; the series is cut after its fourth power."""

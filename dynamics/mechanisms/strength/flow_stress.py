@@ -10,7 +10,7 @@ D. Tabor, The Hardness of Metals (1951).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -51,12 +51,10 @@ class StrengthProfile:
 class FlowMechanism(Mechanism):
     """A mechanism that changes the flow stress; subclasses say by what profile."""
 
-    static: ClassVar[bool] = True
+    static = True
     falls: ClassVar[bool] = False
     relative: ClassVar[Relative]
-    direction: ClassVar[Mapping[str, int]] = {
-        "restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1,
-    }  # fmt: skip
+    direction = {"restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
@@ -99,6 +97,4 @@ class FallingStrength(FlowMechanism):
     """A flow stress that falls: physics that a verdict has no name for."""
 
     named = False
-    direction: ClassVar[Mapping[str, int]] = {
-        "restitution": -1, "permanent_depth_m": 1, "peak_force_N": -1,
-    }  # fmt: skip
+    direction = {"restitution": -1, "permanent_depth_m": 1, "peak_force_N": -1}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -43,7 +42,7 @@ class HardenedLayer(FlowMechanism):
         ),
     )  # fmt: skip
     relative = staticmethod(_layered)
-    reads: ClassVar[tuple[str, ...]] = ("layer_thickness_m",)
+    reads = ("layer_thickness_m",)
 
     def stated(self, around: Surroundings) -> Values:
         """Return the thickness of the layer."""

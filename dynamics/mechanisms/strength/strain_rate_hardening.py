@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -125,5 +124,5 @@ class NegativeRateSensitivity(FallingStrength):
         ),
         Parameter("fall_exponent", "-", 0.03, 0.4, "linear", 0.0, "as of hardening", nodes=3),
     )  # fmt: skip
-    falls: ClassVar[bool] = True
+    falls = True
     relative = staticmethod(risen)

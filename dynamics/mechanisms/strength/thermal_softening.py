@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import ClassVar
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -40,10 +39,8 @@ class ThermalSoftening(FlowMechanism):
             literature=Literature(1.0, "m of 1006 steel, Johnson and Cook 1983"),
         ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": 1}
-    reads: ClassVar[tuple[str, ...]] = (
-        "cp_J_kgK", "melting_K", "environment.temperature_K", "impact.temperature_K",
-    )  # fmt: skip
+    direction = {"restitution": -1, "permanent_depth_m": 1}
+    reads = ("cp_J_kgK", "melting_K", "environment.temperature_K", "impact.temperature_K")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the heat of deformation with the way to melting."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
 
 import numpy as np
 
@@ -86,7 +85,7 @@ class StrainSoftening(FallingStrength):
         ),
         Parameter("softening_power", "-", 0.15, 1.0, "linear", 1.0, "as of hardening", nodes=3),
     )  # fmt: skip
-    falls: ClassVar[bool] = True
+    falls = True
     relative = staticmethod(_hardened)
 
     def applies(self, situations: Sequence[Situation]) -> str:

@@ -78,6 +78,8 @@ def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
         ({"impact.striker": "ball"}, "impact.striker: no striker 'ball'"),
         ({"impact.support": "sprung"}, "target.support_mass_kg: missing"),
         ({"impact.modes": 100}, "impact.modes: 100"),
+        ({"environment.viscosity_Pa_s": 0},
+         "environment.viscosity_Pa_s: 0 (allowed: a number above 0)"),
         ({"impact.laws": "hertz"}, "impact.laws: 'hertz' (allowed: a list"),
     ],
 )  # fmt: skip
@@ -310,9 +312,20 @@ def test_a_wrong_mechanism_is_one_line(lines, words):
         setup(BALL.replace("laws", moves) + "[mechanisms]\n" + lines + "\n")
 
 
-def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():
-    file = setup(BALL + "[mechanisms.squeeze-film]\nfilm_drag_Pa_s = 0.1\n")
-    with pytest.raises(InputErrors, match=r"mechanisms.squeeze-film: .* environment.viscosity_Pa"):
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("[mechanisms.squeeze-film]\nfilm_drag_Pa_s = 0.1\n",
+         r"mechanisms.squeeze-film: .* environment.viscosity_Pa"),
+        ("angle_deg = 5\n[mechanisms]\ntilt = { tilt_deg = -8 }\n",
+         r"mechanisms.tilt.tilt_deg: -8 turns the striker onto the flat \(allowed: what leaves"),
+        ("[sweep]\nangle_deg = [4, 60]\n[mechanisms]\ntilt = { tilt_deg = -5 }\n",
+         "mechanisms.tilt.tilt_deg: -5 turns the striker onto the flat"),
+    ],
+)  # fmt: skip
+def test_what_changes_nothing_by_any_law_or_is_cut_is_refused_with_the_reason(lines, words):
+    file = setup(BALL + lines)
+    with pytest.raises(InputError, match=words):
         file.check_laws([LAW])
 
 

@@ -242,6 +242,14 @@ ASKED = {
         {"target.Sy_Pa": {"value": 2.5e8, "std": 1.75e9}},
         "the standard deviation of target.Sy_Pa is 7 times its value",
     ),
+    "fifteen per cent": (
+        {"friction": {"coefficient": 15.0}, "impact": {"angle_deg": 60}},
+        "friction, 15, is more than metals have; 15 % would be 0.15",
+    ),
+    "waves into a plate that moves as a block": (
+        {"mechanisms": {"half-space-waves": True, "support-compliance": True}},
+        "half-space-waves: the flat moves as a block on its support, and does not bend",
+    ),
     "a shell": (
         {"strikers.ball.mass_kg": 0.001}, "has 0.03271 kg; the contact law takes a shell for solid"
     ),
