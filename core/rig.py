@@ -434,11 +434,11 @@ class EnvironmentTable(InputTable):
 
     fluid: str = ""
     """What is between the bodies, for example air."""
-    viscosity_Pa_s: Positive | None = None
+    viscosity_Pa_s: NotNegative | None = None
     """Its viscosity."""
-    density_kg_m3: Positive | None = None
+    density_kg_m3: NotNegative | None = None
     """Its density."""
-    pressure_Pa: Positive | None = None
+    pressure_Pa: NotNegative | None = None
     """Its pressure."""
     temperature_K: Temperature | None = None
     """Temperature of bodies and surroundings."""

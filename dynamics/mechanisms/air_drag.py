@@ -78,7 +78,7 @@ class AirDrag(Mechanism):
                 f"the fluid is stated as {around.fluid.strip()}, without both density_kg_m3 and "
                 "viscosity_Pa_s"
             )
-        if 0.0 in (around.pressure, around.density):
+        if 0.0 in (around.pressure, around.density, around.viscosity):
             return "there is no air, as stated"
         if around.from_height and not all(
             _arriving(s, self.published(around), around) > 0.0 for s, _ in situations
