@@ -15,6 +15,7 @@ from . import kinds
 from .kinds import CELSIUS, kind_of, unit_of
 from .words import (
     APPROACHES,
+    BALL,
     CORRECTED,
     DENTS,
     DIAMETER,
@@ -293,8 +294,9 @@ def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) 
     if column.spread:
         alone = sum(c.kind == column.kind and c.spread for c in columns) < len(same)
         return "sums up its neighbours" if alone else ""
-    raw = has(CORRECTED, bare(same[0].header)) == has(CORRECTED, bare(column.header))
-    if same[0] is not column and (name in APPROACHES or not raw):
+    alike = all(has(what, bare(same[0].header)) == has(what, bare(column.header))
+                for what in (CORRECTED, *([BALL] if name in DENTS else [])))  # fmt: skip
+    if same[0] is not column and (name in APPROACHES or not alike):
         raise InputError(
             f"{name} stands in {same[0].header!r} already", source=source, key=column.header,
             allowed=f"one such column, --column {f'{column.header}=note'!r} for the other; a table "

@@ -136,7 +136,8 @@ def nearest(header: str) -> str:
     best = max(
         likeness, key=lambda kind: (likeness[kind], kind.name in words.REBOUNDS), default=None
     )
-    if best is None or not likeness[best] or words.has(words.THEORY, bare(header)):
+    far = "²" in header or words.has(rf"{words.THEORY}|{words.NOT_NEARLY}", bare(header))
+    if best is None or not likeness[best] or far:
         return ""
     unit = "" if quantity or best.quantity == "number" else " UNIT"
     return f"{best.said}? --column {f'{without_unit(header).strip()}={best.said}{unit}'!r}"

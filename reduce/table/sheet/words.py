@@ -120,6 +120,23 @@ THEORY = (
 )
 """Of numbers that nobody measured."""
 DERIVED = r"calc|berechn|comput|oblicz|wylicz|计算|計算"
+_SQUARED = r"square|quadrat|cuadrado|carre\b|kwadrat|energ|平方"
+_LESS = (
+    r"loss|verlust|perte|perdid|perdit|strat[ay]|损失|^1 ?[-–−]|^(ln|log)\b|differen|\bref(er|\b)"
+)
+_LATER_BLOW = (
+    rf"({LATER}) ?({REBOUND}|contact|kontakt|impact|stoss(?!z)|choc|choque|urto|collision|hit\b)"
+)
+"""Such as restitution 2nd bounce, second contact time."""
+_NO_WHOLE = (
+    r"\bhalf|halb|\bdemi|mitad|\bmeta\b|polow|/ ?2$|radius|rayon|raggio|\bradio|\braio|promien|"
+    "半径|perimet|umfang|circumf"
+)
+NOT_NEARLY = (
+    rf"{_NO_WHOLE}|\bflight|\brise|\blost|\bloss|pile|\brim\b|energ|elastic|preload|\bvalid|"
+    r"\bdate"
+)
+"""Of what no proposal comes near."""
 CORRECTED = r"corr|korr|korygow|补正|補正|修正"
 ROD = r"\b(rod|stab|stange|barre|tige|barra|asta|varilla|haste|pret)\b|棒"
 """Of a striker that is no ball."""
@@ -206,7 +223,7 @@ KINDS = (
         never=f"{REBOUND}|{_SWING}|contact|kontakt|tilt|neigung"),
     SheetKind("restitution", "number",
         ("restitu[tczi]|restytuc|stoss?zahl|stossziffer|恢复系数|反発係数|はね返り係数",),
-        r"^e ?n? ?\d*$|^cor ?\d*$"),
+        r"^e ?n? ?\d*$|^cor ?\d*$", f"{ALONG}|{_SQUARED}|{_LESS}|{_LATER_BLOW}"),
     SheetKind("rebound_spin_rad_s", "spin", (_SPIN, _AFTER)),
     SheetKind(REBOUND_HEIGHT, "length", (REBOUND, HEIGHT),
         rf"^h ?{_BACK}$|^{_HIGH} ({_LATE})\b", "drop height|fallhoe?he"),
@@ -219,23 +236,24 @@ KINDS = (
         "^(v( ?n)?|v ?(in?|imp(act)?|auf|an|vor|pre)|speed|velocity|geschwindigkeit|vitesse|"
         r"velocita|velocidade?|predkosc|速度)( normal\w*)?$", ALONG),
     SheetKind("dent_diameter_m", "length",
-        (_DENT, rf"{DIAMETER}|dm\b|{_WIDTH}|\bd ?[\dxy]?$|^d\b")),
+        (_DENT, rf"{DIAMETER}|dm\b|{_WIDTH}|\bd ?[\dxy]?$|^d\b"), never=_NO_WHOLE),
     SheetKind("scar_width_m", "length", (_SCAR, _WIDTH)),
     SheetKind("scar_length_m", "length", (_SCAR, _LENGTH)),
     # the largest depth under load is not what stays
     SheetKind("permanent_depth_m", "length", (f"{_DENT}|residu|permanent|bleibend", _DEPTH),
         "^h ?bl$|^(depth|tiefe)$|eindring(tiefe|ung)|profond|profund|głębokość|深[度さ]",
-        rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered"),
+        rf"^(?=.*\bma[xk])(?=.*({_SINK}))|^press|^recovered|dynam"),
     SheetKind("contact_time_s", "time", (_BLOW, _TIME),
         r"duree|durata|duracion|duracao|^t ?(c$|[ck]ont)",
         rf"between|zwischen|entre|miedzy|time of|zeitpunkt|\bbis\b|until|before|{_AFTER}|{DROPS}|"
+        rf"{_LATER_BLOW}|time (to|at)\b|avant|hasta|antes|przed|hh:mm|"
         r"\b(vol|volo|voo)\b|vuelo|essai|ensa[iy]o|\bprova\b|\btest|versuch|prue?f"),
-    SheetKind("peak_force_N", "force", (_MOST, _FORCE), rf"^f ?({_MOST})"),
+    SheetKind("peak_force_N", "force", (_MOST, _FORCE), rf"^f ?({_MOST})", _LATER_BLOW),
     SheetKind(LOAD, "force",
         (r"^(load|last|charge|carico|carga|obciazenie|载荷|负荷)(?![a-z])|荷重|"
          "(test|applied) (force|load)|force appliquee|fuerza aplicada|forza applicata|"
          "forca aplicada|prue?f(kraft|last)|试验力|試験力",)),
-    SheetKind(BALL_DIAMETER, "length", (BALL, DIAMETER)),
+    SheetKind(BALL_DIAMETER, "length", (BALL, DIAMETER), never=rf"\bflat|abplatt|meplat|{_DENT}"),
     SheetKind(BALL_MASS, "mass", (BALL, _MASS), "^(mass[ae]?|masa|质量|質量)$"),
     SheetKind("trial", "text",
         (r"^#|^(nr|no|n|n\.?o|num|number|numero|test|trial|versuchs?|messung|probe|shot|run|id|"

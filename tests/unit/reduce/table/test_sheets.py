@@ -387,6 +387,14 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
         ("v (m/s),e,Zeit nach Aufprall (s)\n1,0.65,36\n", "Zeit nach Aufprall (s)"),
         ("v (m/s),e,Plate temperature (°C),Ball temperature (°C)\n1,0.65,20,25\n",
          "Ball temperature (°C)"),
+        *((f"v (m/s),e,{header}\n1,0.65,0.4\n", header) for header in (
+            "tangential restitution", "restitution 2nd bounce", "restitution squared", "1 - e_n",
+            "energy restitution", "restitution loss", "ln restitution", "restitution difference",
+            "time to second impact (s)", "time at impact (ms)", "second contact time (us)",
+            "durée avant le deuxième impact (ms)", "peak force of second impact (N)",
+            "half dent diameter (mm)", "crater diameter/2 (mm)", "dent radius (mm)",
+            "ball flat diameter (mm)", "dynamic indentation depth (um)",
+        )),
     ],
 )  # fmt: skip
 def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
@@ -423,6 +431,8 @@ def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
         ("Plate angle (deg),v (m/s),e\n30,1,0.6\n", "an angle from the normal"),
         ("drop height (cm),rebound (cm),rebound corrected (cm)\n50,18,17\n",
          r"stands in 'rebound \(cm\)' already .*--column 'rebound corrected \(cm\)=note'"),
+        ("v (m/s),dent diameter (mm),ball dent diameter (mm)\n1,0.9,0.4\n",
+         r"stands in 'dent diameter \(mm\)' already"),
         ("No.,1,2\nDrop height (cm),50,60\nRebound height (cm),18,21\n",
          "headers stand in a column, not a row"),
         ("drop height (m);e\n1,0;0,6\n400,0;0,6\n",
