@@ -153,7 +153,7 @@ def _with_mechanisms(
     for column, read in acting.observed(plain, seen).items():
         values[SIMULATED[column]] = np.asarray(read)
     for row in np.flatnonzero(values["peak_depth_m"] == 0.0):
-        for name, number in {**unstruck(plain[row]), "contacts": 0.0}.items():
+        for name, number in {**unstruck(scenes[row]), "contacts": 0.0}.items():
             values[name][row] = number
     return _named(scene, given, values, np.full(len(plain), BY_STEPS))
 

@@ -60,7 +60,7 @@ class ExportedBall(NamedTuple):
 
     def by(self, law: ContactLaw) -> ContactLaw:
         """Return the law as `impact` has it: the smaller of two spheres is the law's."""
-        return law if self.second is None else self.second.faced(law, self.pair.R)
+        return law if self.second is None else self.second.faced(law, self.pair)
 
 
 def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:

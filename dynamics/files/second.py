@@ -42,7 +42,7 @@ class SecondSphere(StruckSphere):
         """
         striker = scene.striker
         R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
-        law = self.faced(scene.law, R)
+        law = self.faced(scene.law, replace(scene.pair, R=R))
         # spin turns the surface as fast as before: r w
         spin = scene.approach.spin * striker.tip_radius / R
         one = Striker(
@@ -54,19 +54,23 @@ class SecondSphere(StruckSphere):
             striker=one, approach=replace(scene.approach, spin=spin),
         )  # fmt: skip
 
-    def faced(self, law: ContactLaw, R: float) -> ContactLaw:
-        """Return the law as the two face each other, R [m] that of both: the smaller has it."""
-        smaller, struck = self._smaller(R)
-        law = similar(law, smaller / R)
+    def faced(self, law: ContactLaw, pair: Pair) -> ContactLaw:
+        """Return the law as the two of a pair face each other, whose R is that of both.
+
+        The smaller one has it, of equal ones the weaker: finite elements are nearer to that.
+        """
+        smaller, struck = self._smaller(pair.R, pair.flat.strength < pair.sphere.strength)
+        law = similar(law, smaller / pair.R)
         return turned(law) if struck else law
 
-    def _smaller(self, R: float) -> tuple[float, bool]:
+    def _smaller(self, R: float, weaker: bool = False) -> tuple[float, bool]:
         """Radius of the sphere of the larger curvature, R being that of both; whether it is this.
 
-        Of equal ones, and in a seat, it is the other.
+        Of equal ones it is this where it is `weaker`; in a seat it is the other.
         """
         own = 1.0 / (1.0 / R - 1.0 / self.radius)
-        struck = 0.0 < self.radius < own
+        alike = math.isclose(own, self.radius, rel_tol=1e-9)
+        struck = weaker if alike else 0.0 < self.radius < own
         return self.radius if struck else own, struck
 
     def departure(self, law: ContactLaw, pair: Pair, delta: float | Array) -> Array:

@@ -316,9 +316,11 @@ class Setup:
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]
         relative, both = found["rebound_speed_m_s"], plain.striker.mass
         own = np.full(len(found), self.file.strikers[self.striker].mass_kg.value)
+        before, after = found["approach_tangential_m_s"], found["tangential_rebound_m_s"]
         return Impacts({
             **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns},
             "rebound_speed_m_s": self.second.own_rebound(relative, speed, both), "mass_kg": own,
+            "tangential_rebound_m_s": self.second.own_sliding(after, before, both),
         })  # fmt: skip
 
 

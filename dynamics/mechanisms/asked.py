@@ -81,19 +81,19 @@ class Asked:
             SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
         }
         if changed.get("peak_depth_m", found.peak_depth_m) == 0.0:
-            changed |= {**unstruck(plain), "contacts": 0, "spot": plain.spot}
+            changed |= {**unstruck(self.attached([plain])[0]), "contacts": 0, "spot": plain.spot}
         return replace(found, **changed)
 
 
 NONE_ASKED = Asked()
 
 
-def unstruck(plain: Scene) -> dict[str, float]:
+def unstruck(scene: Scene) -> dict[str, float]:
     """Return the observables of a striker that a film has stopped: there was no blow.
 
-    Nothing has acted along the flat.
+    Nothing has acted along the flat; `scene` is the one with its mechanisms.
     """
-    kept, a, striker = ("kinetic_before_J", "gravity_work_J"), plain.approach, plain.striker
+    kept, a, striker = ("kinetic_before_J", "gravity_work_J"), scene.approach, scene.striker
     return {
         **dict.fromkeys((name for name in NUMBERS if name not in kept), 0.0),
         "tangential_rebound_m_s": a.tangential, "rebound_spin_rad_s": a.spin,

@@ -74,7 +74,7 @@ def main() -> None:
         joint = Pair(small, large, 1e-3 / (1.0 + 1.0 / ratio))
         depth = joint.R * np.array(APPROACHES)
         found = forces(Pair(small, large, 1e-3), ratio, given.level)
-        faced = SecondSphere(ratio * 1e-3).faced(LAWS["fitted"], joint.R)
+        faced = SecondSphere(ratio * 1e-3).faced(LAWS["fitted"], joint)
         for what, law in (("flat", LAWS["fitted"]), ("as told", faced)):
             off = found / (law.loading(joint, depth) / (joint.E_reduced * joint.R**2)) - 1.0
             print(

@@ -79,9 +79,12 @@ def test_momentum_and_energy_are_kept(mass):
 
 
 def test_a_sweep_has_the_strikers_own_mass_and_rebound():
-    """Of two equal spheres the striker goes on with (1 - e) v/2."""
-    two = met(sweep={"impact_speed_m_s": [0.5, 2.0]})
+    """Of two equal spheres the striker goes on with (1 - e) v/2, and takes half of what slides."""
+    sweep = {"impact_speed_m_s": [0.5, 2.0], "approach_tangential_m_s": [0.3]}
+    two = met(sweep=sweep, friction={"coefficient": 0.1})
     found = two.swept(LAWS["fitted"])
+    taken = (0.3 - found["tangential_rebound_m_s"]) * found["mass_kg"]
+    assert taken == pytest.approx(np.abs(found["tangential_impulse_Ns"]), rel=1e-6)
     assert found["mass_kg"] == pytest.approx(0.004084070449666731)
     on = 0.5 * (1.0 - found["restitution"]) * found["impact_speed_m_s"]
     assert found["rebound_speed_m_s"] == pytest.approx(-on)
@@ -131,7 +134,7 @@ def test_two_spheres_carry_what_their_finite_elements_do(strengths, radii, force
     R = 1e-3 / (1.0 + 1.0 / radii)
     pair, depth = Pair(small, large, R), R * np.array([0.01, 0.02, 0.05])
     here, there = SecondSphere(radii * 1e-3), SecondSphere(1e-3)
-    law = here.faced(LAWS["fitted"], R)
+    law = here.faced(LAWS["fitted"], pair)
     found = law.loading(pair, depth) / (pair.E_reduced * R * R)
     off = np.abs(found / np.array(forces) - 1.0)
     known = np.hypot(
@@ -139,9 +142,8 @@ def test_two_spheres_carry_what_their_finite_elements_do(strengths, radii, force
     )  # fmt: skip
     assert (off < 2.0 * known + 0.004).all()
     assert off.max() < (0.011 if strengths <= 1.0 else 0.05)
-    if radii > 1.0:  # of equal radii either may be the law's sphere
-        turned = there.faced(LAWS["fitted"], R).loading(pair.turned, depth)
-        assert turned == pytest.approx(law.loading(pair, depth), rel=1e-12)
+    turned = there.faced(LAWS["fitted"], pair.turned).loading(pair.turned, depth)
+    assert turned == pytest.approx(law.loading(pair, depth), rel=1e-12)
 
 
 def test_a_law_at_another_radius_keeps_small_contacts_work_and_strains():
@@ -180,8 +182,9 @@ def test_equal_spheres_keep_equal_dents_and_unequal_ones_what_finite_elements_ha
         assert found.residual_flat_m == pytest.approx(found.residual_sphere_m, rel=1e-9) != 0.0
     metal = Material(E=200e9, nu=0.3, Sy=200e9 / 300.0)
     R = 1e-3 / 1.5
-    law = SecondSphere(2e-3).faced(LAWS["fitted"], R)
-    found = law.share(Pair(metal, metal, R), R * np.array([0.02, 0.05]))
+    pair = Pair(metal, metal, R)
+    law = SecondSphere(2e-3).faced(LAWS["fitted"], pair)
+    found = law.share(pair, R * np.array([0.02, 0.05]))
     assert found == pytest.approx([0.524, 0.616], abs=0.01)
 
 
@@ -231,6 +234,6 @@ def test_a_seat_carries_what_finite_elements_of_it_do():
     """1.1, 4.7 and 12.8 % less than a flat at 0.01, 0.02 and 0.04 R, three radii wide (E/341)."""
     body, R = Material(E=205e9, nu=0.3, Sy=205e9 / 341.0), 1.5e-3
     pair, depth = Pair(body, body, R), R * np.array([0.01, 0.02, 0.04])
-    law = SecondSphere(-3e-3).faced(LAWS["fitted"], R)
+    law = SecondSphere(-3e-3).faced(LAWS["fitted"], pair)
     less = law.loading(pair, depth) / LAWS["fitted"].loading(pair, depth) - 1.0
     assert less == pytest.approx([-0.011, -0.047, -0.128], abs=0.012)
