@@ -77,12 +77,16 @@ def test_a_terminal_fall_is_answered(eta, arrives, cushioned):
     assert any("in place of 1.981 m/s" in line for line in blow.checks()) is (left > 0.0)
 
 
-@pytest.mark.parametrize("other", [{}, {"shape": "sphere", "radius_m": 0.01}])
-def test_a_film_that_stops_a_ball_leaves_what_goes_along_the_flat(other):
-    """Nothing has touched: spin and speed along stay, in a sweep as in a blow."""
+@pytest.mark.parametrize(
+    ("other", "tilt"), [({}, 0.0), ({"shape": "sphere", "radius_m": 0.01}, 0.0), ({}, 5.0)]
+)
+def test_a_film_that_stops_a_ball_leaves_what_goes_along_the_flat(other, tilt):
+    """Nothing has touched: spin and speed along, as tilted, stay, in a sweep as in a blow."""
+    along = -0.05 * math.sqrt(2.0) * math.cos(math.radians(45.0 + tilt))
     made = setup(
         target=GLASS | other, radius=3e-3, speed=0.05, environment={"viscosity_Pa_s": 0.1},
-        mechanisms={"squeeze-film": True}, friction={"coefficient": 0.2},
+        mechanisms={"squeeze-film": True} | ({"tilt": {"tilt_deg": tilt}} if tilt else {}),
+        friction={"coefficient": 0.2},
         impact={"angle_deg": 45.0, "approach_spin_rad_s": 100.0},
         sweep={"impact_speed_m_s": [0.05]},
     )  # fmt: skip
@@ -90,7 +94,7 @@ def test_a_film_that_stops_a_ball_leaves_what_goes_along_the_flat(other):
     found, swept = blow_of(made, [law])["hertz"], made.swept(law)
     assert (found.contacts, swept["contacts"][0]) == (0, 0)
     for name, right in (
-        ("rebound_spin_rad_s", 100.0), ("tangential_rebound_m_s", -0.05),
+        ("rebound_spin_rad_s", 100.0), ("tangential_rebound_m_s", along),
         ("rebound_speed_m_s", 0.0), ("kinetic_restitution", 0.0), ("plastic_work_J", 0.0),
     ):  # fmt: skip
         assert getattr(found, name) == pytest.approx(right, abs=1e-12)
