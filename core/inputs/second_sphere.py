@@ -67,7 +67,7 @@ class StruckSphere:
         """
         return np.asarray(relative - reduced / self.mass * (speed + relative))
 
-    def own_sliding(self, relative: Array, before: Array, reduced: Array | float) -> Array:
+    def own_tangential(self, relative: Array, before: Array, reduced: Array | float) -> Array:
         """Return the striker's speed along the contact after, from the relative one [m/s]."""
         return np.asarray(before + (1.0 - reduced / self.mass) * (relative - before))
 

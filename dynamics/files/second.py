@@ -42,7 +42,8 @@ class SecondSphere(StruckSphere):
         """
         striker = scene.striker
         R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
-        law = self.faced(scene.law, replace(scene.pair, R=R))
+        pair = replace(scene.pair, R=R)
+        law = self.faced(scene.law, pair)
         # spin turns the surface as fast as before: r w
         spin = scene.approach.spin * striker.tip_radius / R
         one = Striker(
@@ -50,7 +51,7 @@ class SecondSphere(StruckSphere):
             name=striker.name,
         )  # fmt: skip
         return scene.with_(
-            law=law, pair=replace(scene.pair, R=R), gravity=0.0 if self.free else scene.gravity,
+            law=law, pair=pair, gravity=0.0 if self.free else scene.gravity,
             striker=one, approach=replace(scene.approach, spin=spin),
         )  # fmt: skip
 

@@ -320,7 +320,7 @@ class Setup:
         return Impacts({
             **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns},
             "rebound_speed_m_s": self.second.own_rebound(relative, speed, both), "mass_kg": own,
-            "tangential_rebound_m_s": self.second.own_sliding(after, before, both),
+            "tangential_rebound_m_s": self.second.own_tangential(after, before, both),
         })  # fmt: skip
 
 

@@ -296,7 +296,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     yield (
         f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
         f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other, "
-        "spin and a sweep's rebound are the striker's own; the struck sphere is "
+        "spin and a sweep's rebound speeds are the striker's own; the struck sphere is "
         f"{'free' if second.free else 'held'}"
     )
     if turns := second.turned(found.tangential_impulse_Ns):

@@ -124,6 +124,7 @@ _SQUARED = r"square|quadrat|cuadrado|carre\b|kwadrat|energ|平方"
 _LESS = (
     r"loss|verlust|perte|perdid|perdit|strat[ay]|损失|^1 ?[-–−]|^(ln|log)\b|differen|\bref(er|\b)"
 )
+"""Of a restitution: its loss, its logarithm, its difference to another."""
 _LATER_BLOW = (
     rf"({LATER}) ?({REBOUND}|contact|kontakt|impact|stoss(?!z)|choc|choque|urto|collision|hit\b)"
 )
