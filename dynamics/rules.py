@@ -23,7 +23,7 @@ class ImpactRules:
     slope_step: float = rule(
         1e-4, "step of differences of a force that is smooth between its borders [depth]"
     )
-    strength_nodes: int = rule(41, "nodes of the table over ln(depth/R) [-]")
+    strength_nodes: int = rule(121, "nodes of the table over ln(depth/R) [-]")
     partial_slip: float = rule(
         0.77, "part of Mindlin's stiffness that a single spring has which stands for slip from the "
         "edge inwards [-]",

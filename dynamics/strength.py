@@ -88,11 +88,7 @@ class StrengthTable:
     @cached_property
     def work(self) -> Array:
         """(NODES,) work of loading up to each depth at the stated strength [J]."""
-        d, f = self.depth, np.exp(self.stated.force)
-        # exact for a power law between the nodes
-        power = np.diff(self.stated.force) / np.diff(np.log(d))
-        step = (f[1:] * d[1:] - f[:-1] * d[:-1]) / (power + 1.0)
-        return np.concatenate([[0.4 * f[0] * d[0]], 0.4 * f[0] * d[0] + np.cumsum(step)])
+        return self._work_of(self.stated.force)
 
     @cached_property
     def radius(self) -> Array:
@@ -116,9 +112,20 @@ class StrengthTable:
         share = (1.0 + stated) / (1.0 + stated * found[F_POWER])
         return np.asarray(found[F_FORCE] * found[F_RECOVERY] * share)
 
-    def peak(self, energy: float) -> float:
-        """Depth [m] at which the loading has taken up `energy` [J]."""
-        return float(np.exp(np.interp(math.log(energy), self._log_work, self.log_depth)))
+    def peak(self, energy: float, strength: Array | None = None) -> float:
+        """Depth [m] at which loading has taken up `energy` [J], at relative strengths or stated."""
+        known = self._log_work
+        if strength is not None:
+            factors = self.factors(strength)[F_FORCE]
+            known = np.log(self._work_of(self.stated.force + np.log(factors)))
+        return float(np.exp(np.interp(math.log(energy), known, self.log_depth)))
+
+    def _work_of(self, log_force: Array) -> Array:
+        d, f = self.depth, np.exp(log_force)
+        # exact for a power law between the nodes
+        power = np.diff(log_force) / np.diff(self.log_depth)
+        step = (f[1:] * d[1:] - f[:-1] * d[:-1]) / (power + 1.0)
+        return np.cumsum(np.concatenate([[0.4 * f[0] * d[0]], step]))
 
     @cached_property
     def _near(self) -> tuple[Array, Array, Array]:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.dynamics import Approach, Scene, Striker
+from dentscope.dynamics import Approach, Scene, Striker, strike
 from dentscope.dynamics.beam import rod_modes
 from dentscope.dynamics.files.bodies import flowing
 from dentscope.dynamics.force import loading_window
@@ -78,10 +78,10 @@ def test_slopes_are_differences_over_a_ten_thousandth_of_the_depth():
     assert loading_window(1.0) == pytest.approx((1.0 - 1e-4, 1.0 + 1e-4), abs=1e-12)
 
 
-def test_a_table_of_strengths_has_four_nodes_to_a_factor_of_four():
-    """From a millionth of the radius to all of it: 40 steps over 6 ln 10."""
+def test_a_table_of_strengths_has_twenty_nodes_to_a_factor_of_ten():
+    """From a millionth of the radius to all of it: 120 steps over 6 ln 10."""
     depth = strength_table(LAWS["fitted"], scene().pair).depth
-    assert depth[4] / depth[0] == pytest.approx(10.0**0.6)
+    assert depth[20] / depth[0] == pytest.approx(10.0)
 
 
 def test_the_work_of_a_table_is_two_fifths_of_hertzs_force_times_depth():
@@ -174,12 +174,29 @@ def test_what_asperities_give_back_alone_is_the_work_of_a_power_of_five_quarters
 
 
 def test_at_the_turn_the_rate_is_a_fifth_of_that_at_the_touch():
-    """1 + A (r/1000)^n with n = 1: r = 0.4 v/a at the touch, 0.08 v/a from the turn on."""
+    """1 + A (r/1000)^n with n = 1: r = 0.4 v/a at the touch, 0.08 v/a where the work is spent."""
     given = scene(speed=3.0)
     table = strength_table(given.law, given.pair)
-    rate = (risen(given, table, 1.0, 1.0) - 1.0) * 1e3
+    strength = risen(given, table, 0.01, 1.0)
+    rate = (strength - 1.0) * 1e5
     assert rate[0] * table.radius[0] == pytest.approx(0.4 * 3.0, rel=1e-6)
-    assert rate[-1] * table.radius[-1] == pytest.approx(0.08 * 3.0, rel=1e-9)
+    turn = math.log(table.peak(0.5 * 4e-3 * 3.0**2, strength))
+    assert np.interp(turn, table.log_depth, rate * table.radius) == pytest.approx(0.24, rel=0.01)
+    assert np.all(np.diff(rate * table.radius) <= 0.0)
+
+
+@pytest.mark.parametrize("name", ["strain-rate-hardening", "work-hardening", "hardened-layer"])
+def test_over_the_speed_a_stronger_metals_restitution_falls_and_is_at_most_one(name):
+    """From first yield on: no place of a node of the table is seen."""
+    values = {p.name: p.value(0.6) for p in OF[name].parameters}
+    seen = np.array([
+        strike(OF[name].attach(scene(speed=v), values, Surroundings())).restitution
+        for v in np.geomspace(0.005, 8.0, 120)
+    ])  # fmt: skip
+    assert seen.max() < 1.0 + 2e-5
+    assert np.all(np.diff(seen) < 3e-5)
+    falls = -np.diff(seen)[30:]
+    assert np.max(np.abs(np.diff(falls))) < 0.15 * falls.max()
 
 
 @pytest.mark.parametrize(("speed", "acts"), [(0.5, True), (8.0, False)])
