@@ -16,8 +16,8 @@ from .tabulated.bits import power
 
 # Places in the vector that describes the modified force.
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
-DAMPING, RADIATION, SHAPE, RETURN = range(6, 10)
-N_FORCE = 10
+DAMPING, RADIATION, SHAPE, RETURN, RETARDED = range(6, 11)
+N_FORCE = 11
 
 # The branch vector: what `set_peak` writes, the contact radius at the peak and whether the depth
 # falls; flat, radius and modulus of a cut tip that has stayed elastic, else a flat of 0.
@@ -31,6 +31,9 @@ F_FORCE, F_RECOVERY, F_RADIUS, F_ODDS, F_POWER = range(5)
 N_FACTORS = 5
 # The nodes of each: ln(depth / R), equally spaced.
 LOG_DEPTH_FIRST, LOG_DEPTH_LAST = math.log(1e-6), 0.0
+
+DAMPING_DEPTH = 1e-5
+"""Elastic depth [m] at which the two forms of a viscous force are the same."""
 
 PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 """Mean pressure over yield strength under a rigid circular punch (Eq. 1.10 at a -> 0)."""

@@ -132,13 +132,23 @@ def slope_of(m, branch, depth, phase):
     return rise / (high - low) if high > low else 0.0
 
 
+@njit(cache=True, **PLAIN)
+def _width(m, branch, depth, phase):
+    """Contact radius [m]; in the recovery it falls as the root of the depth left, as Hertz's."""
+    if phase == at.LOAD:
+        return loading_radius(m, depth) if depth > 0.0 else 0.0
+    if phase != at.UNLOAD:
+        return 0.0
+    rest = branch[1] + branch[2]
+    return branch[fo.PEAK_RADIUS] * math.sqrt(max(depth - rest, 0.0) / (branch[0] - rest))
+
+
 def _contact_of(m, w, z, seen):
     """Return normal force, friction limit, ploughing and tangential stiffness at the state `z`.
 
     Depth, rate and sliding speed go into `seen`; over an imprint depth and rate are those from the
     remembered surface, which may lean. The tangential stiffness is a multiple of the
-    normal one, 2 E' a; during the recovery a falls as the root of the depth left, as Hertz's does
-    about the residual depth.
+    normal one, 2 E' a.
     """
     _penetration_inlined(m, w, z, seen)
     body, force, branch, phase = m.body, m.force, w.branch, w.now[at.PHASE]
@@ -162,17 +172,16 @@ def _contact_of(m, w, z, seen):
         waves = resists * (seen[at.RATE] - body[at.S_PLATE] * f)
         waves /= 1.0 + resists * body[at.S_PLATE]
         f += waves
-    if force[fo.DAMPING] != 0.0:
-        f += f * force[fo.DAMPING] * seen[at.RATE]
+    if force[fo.DAMPING] != 0.0 and f > 0.0:
+        chi = force[fo.DAMPING]
+        if force[fo.RETARDED] != 0.0:
+            elastic = 4.0 / 3.0 * force[fo.MODULUS] * _width(m, branch, depth, phase)
+            chi *= (elastic * fo.DAMPING_DEPTH / seen[at.STATIC]) ** force[fo.RETARDED]
+        f += f * chi * seen[at.RATE]
     seen[at.RADIATED] = max(waves, -seen[at.STATIC])
     f = max(f, 0.0)
     if body[at.COMPLIANCE] < math.inf:
-        a = 0.0
-        if phase == at.LOAD and depth > 0.0:
-            a = loading_radius(m, depth)
-        elif phase == at.UNLOAD:
-            rest = branch[1] + branch[2]
-            a = branch[fo.PEAK_RADIUS] * math.sqrt(max(depth - rest, 0.0) / (branch[0] - rest))
+        a = _width(m, branch, depth, phase)
         stiffness = 2.0 * body[at.COMPLIANCE] * force[fo.MODULUS] * a
     mu = body[at.MU]
     if body[at.MU_STATIC] != body[at.MU]:

@@ -296,7 +296,7 @@ def test_a_standard_deviation_of_a_mechanism_enters_the_band():
     [
         ("contact-damping = 0.1", "true, false, or a table of its numbers"),
         ("nonsense = false", "mechanisms.nonsense: unknown key"),
-        ("contact-damping = { damping_s_m = 3.0 }", r"0.003 to 0.3 \[s/m\]"),
+        ("contact-damping = { damping_s_m = 3.0 }", r"0.003 to 1 \[s/m\]"),
         ("contact-damping = { damping = 0.1 }", "unknown key"),
         ("damping = true", "contact-damping"),
         ("adhesion = true", "missing"),

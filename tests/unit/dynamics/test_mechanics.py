@@ -143,6 +143,20 @@ def test_the_largest_force_of_a_damped_contact_comes_before_the_largest_depth(ch
     assert found.loading_time_s == pytest.approx(time[force.argmax()], rel=0.02)
 
 
+@pytest.mark.parametrize("speed", [0.1, 2.0])
+def test_a_contact_with_a_time_of_retardation_gives_back_what_kuwabara_and_kono_say(speed):
+    """e of F = k (d^1.5 + 1.5 tau d^0.5 d') as the series of Ramirez and others (1999)."""
+    tau = 1e-7
+    values = {"damping_s_m": 1.5 * tau / 1e-5, "damping_depth_exponent": 1.0}
+    made = setup(speed=speed, mechanisms={"contact-damping": values})
+    law = LAWS["hertz"]
+    scene = made.plain(law)
+    k = 4.0 / 3.0 * scene.pair.E_reduced * math.sqrt(scene.pair.R)
+    x = 1.5 * tau * (k / scene.striker.mass) ** 0.4 * speed**0.2
+    series = 1.0 - 1.15344 * x + 0.79826 * x**2 - 0.483582 * x**3
+    assert blow_of(made, [law])["hertz"].restitution == pytest.approx(series, abs=5e-5)
+
+
 def test_a_ball_that_falls_on_a_flat_that_leans_is_braked_along_its_path():
     light = {"ball": {**STEEL, "density_kg_m3": 80.0}, "radius": 0.02, "speed": 0.0}
     speeds = []
