@@ -466,11 +466,9 @@ class DiagnosisRules:
         "a stylus or a microscope, and a microscope with a scale",
     )  # fmt: skip
     rate_priors: tuple[tuple[str, tuple[float, float]], ...] = rule(
-        (("rise_at_1000_per_s", (0.4, 0.35)), ("rate_exponent", (0.15, 0.08)),
-         ("strength_kept", (0.87, 0.08))),
+        (("rise_at_1000_per_s", (0.4, 0.35)), ("rate_exponent", (0.15, 0.08))),
         "priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise) [-]",
-        "rises of 0.1 to 0.4 by C of Johnson and Cook, 0.6 to 1.9 by Cowper and Symonds; of what "
-        "is kept the range of strain-rate-hardening",
+        "rises of 0.1 to 0.4 by C of Johnson and Cook, 0.6 to 1.9 by Cowper and Symonds",
     )  # fmt: skip
 
 

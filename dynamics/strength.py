@@ -22,7 +22,7 @@ from ..core.arrays import Array
 from ..core.material import Pair
 from ..models.base import ContactLaw, remembering, unwarned
 from ..models.kernel import cubic
-from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from .force import F_FORCE, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from .rules import RULES
 
 NODES = RULES.strength_nodes
@@ -104,13 +104,6 @@ class StrengthTable:
         """Return the factors of `dynamics.force`, (N_FACTORS, NODES), for relative strengths."""
         near = np.exp(_LEVELS[0]) <= np.min(strength) and np.max(strength) <= np.exp(_LEVELS[-1])
         return np.asarray(_factors(strength, *(self._near if near else self._far)))
-
-    def given_back(self, strength: Array) -> Array:
-        """Return the factor on the work of the recovery, (NODES,), for relative strengths."""
-        found = self.factors(strength)
-        stated = np.exp(self.stated.power)
-        share = (1.0 + stated) / (1.0 + stated * found[F_POWER])
-        return np.asarray(found[F_FORCE] * found[F_RECOVERY] * share)
 
     def peak(self, energy: float, strength: Array | None = None) -> float:
         """Depth [m] at which loading has taken up `energy` [J], at relative strengths or stated."""

@@ -167,26 +167,26 @@ def _dented(problem: Problem) -> tuple[str, float]:
 
 
 def rate_prior(rises: Sequence[Rise]) -> Array:
-    """Mean and standard deviation of the rate law's numbers, (3, 2), after curves at several rates.
+    """Mean and standard deviation of the rate law's numbers, (2, 2), after curves at several rates.
 
-    The prior of those numbers without such curves is `RATE`; what is kept at the turn is its own.
+    The prior of those numbers without such curves is `RATE`.
     """
     prior = np.array(list(RATE.values()))
     if not rises:
         return prior
     of = {p.name: p for p in StrainRateHardening.parameters}
-    rise, exponent = (of[name] for name in list(RATE)[:2])
+    rise, exponent = (of[name] for name in RATE)
     axes = (
         np.linspace(math.log1p(rise.low), math.log1p(rise.high), 200),
         np.linspace(exponent.low, exponent.high, 200),
     )
     at = np.array(np.meshgrid(*axes, indexing="ij"))
-    away = (at - prior[:2, 0, None, None]) / prior[:2, 1, None, None]
+    away = (at - prior[:, 0, None, None]) / prior[:, 1, None, None]
     weight = np.exp(-0.5 * (rises_misfit(rises, np.expm1(at[0]), at[1]) + (away**2).sum(axis=0)))
     mean = (weight * at).sum(axis=(1, 2)) / weight.sum()
     apart = at - mean[:, None, None]
-    prior[:2, 0] = mean
-    prior[:2, 1] = np.sqrt((weight * apart**2).sum(axis=(1, 2)) / weight.sum())
+    prior[:, 0] = mean
+    prior[:, 1] = np.sqrt((weight * apart**2).sum(axis=(1, 2)) / weight.sum())
     return prior
 
 

@@ -218,7 +218,7 @@ METALS = {"hard on mild": (HARD, MILD), "mild on hard": (MILD, HARD), "near": (N
 COLD = Surroundings(heat_capacity=1e12, melting=1500.0, ambient=300.0)
 UNIFORM = {
     "strain-rate-hardening": lambda f: (
-        {"rise_at_1000_per_s": f - 1.0, "rate_exponent": 0.0, "strength_kept": 1.0}, COLD),
+        {"rise_at_1000_per_s": f - 1.0, "rate_exponent": 0.0}, COLD),
     "work-hardening": lambda f: ({"hardening_ratio": f - 1.0, "hardening_exponent": 0.0}, COLD),
     "size-effect": lambda f: ({"size_length_m": (f * f - 1.0) * R}, COLD),
     "hardened-layer": lambda f: ({"layer_hardening": f - 1.0, "layer_thickness_m": 1e9}, COLD),

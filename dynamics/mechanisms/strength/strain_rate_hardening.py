@@ -11,9 +11,9 @@ from ....core.arrays import Array
 from ....core.inputs.flow_curve import SPECIMENS, Rise
 from ...rules import RULES
 from ...scene import Scene
-from ...strength import StrengthTable, strength_table
-from ..arithmetic import energy, times
-from ..base import Literature, Parameter, Situation, Surroundings, Values
+from ...strength import StrengthTable
+from ..arithmetic import energy
+from ..base import Literature, Parameter, Situation
 from .flow_stress import RATE, FallingStrength, FlowMechanism
 
 REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
@@ -56,16 +56,11 @@ def rises_misfit(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
 
 
 class StrainRateHardening(FlowMechanism):
-    """The flow stress rises with the strain rate, as a power (Cowper-Symonds) or a logarithm.
-
-    What a metal keeps of that strength where the striker turns is a parameter: flow that follows
-    the present rate relaxes there in part, dislocations that are stored keep it all. The way back
-    then is that of the strength that is kept.
-    """
+    """The flow stress rises with the strain rate, as a power (Cowper-Symonds) or a logarithm."""
 
     name = "strain-rate-hardening"
     title = "the metal is stronger at the rates of the impact"
-    equations = "S = S_y [1 + A (r / 1000 s^-1)^n], r = 0.4 v(delta)/a; back from S_y + k (S - S_y)"
+    equations = "S = S_y [1 + A (r / 1000 s^-1)^n], r = 0.4 v(delta)/a"
     parameters = (
         Parameter(
             "rise_at_1000_per_s", "-", 0.03, 2.5, "log", 0.0,
@@ -77,20 +72,12 @@ class StrainRateHardening(FlowMechanism):
             "Cowper-Symonds 1/q 0.1-0.25; a logarithm looks like C/A", nodes=3,
             literature=Literature(0.2, "q = 5, mild steel, Cowper and Symonds 1957"),
         ),
-        Parameter(
-            "strength_kept", "-", 0.6, 1.0, "linear", 1.0,
-            "0.88-0.95 in finite elements with Cowper and Symonds' or Johnson and Cook's law "
-            "(docs/verification.md); 1 for a strength that stays as the rate falls (strain rate "
-            "history: Klepaczko 1975)",
-            nodes=3,
-            literature=Literature(1.0, "the strength of the rate, as the law is used in statics"),
-        ),
     )  # fmt: skip
     relative = staticmethod(risen)
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Flow curves at several rates leave the rises within two deviations of the best."""
-        rise, exponent, kept = self.parameters
+        rise, exponent = self.parameters
         rises = situations[0][1].rises
         if not rises:
             return self.parameters
@@ -102,19 +89,7 @@ class StrainRateHardening(FlowMechanism):
         found = replace(
             rise, low=float(left[0]), high=float(left[-1]), source="flow curves at several rates"
         )
-        return found, exponent, kept
-
-    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
-        """Multiply the flow stress that the scene has; take from the way back what relaxes."""
-        found = super().attach(scene, values, around)
-        kept = values["strength_kept"]
-        if kept == 1.0:
-            return found
-        table = strength_table(scene.law, scene.pair)
-        strength = self.strength(scene, values, around).profile(scene, table)
-        back, whole = (table.given_back(s) for s in (1.0 + kept * (strength - 1.0), strength))
-        less = times(scene.force.recovery_factors, back / whole)
-        return found.with_(force=replace(found.force, recovery_factors=less))
+        return found, exponent
 
 
 class NegativeRateSensitivity(FallingStrength):

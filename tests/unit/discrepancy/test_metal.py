@@ -43,7 +43,7 @@ CURVE = swift(Sy=350e6, K=900e6, n=0.2)
 PLATE = Material(E=200e9, nu=0.3, Sy=350e6, flow=Flow(CURVE))
 BALL = Material(E=210e9, nu=0.3, Sy=2e9)
 RISE = 0.3
-RATE = {"rise_at_1000_per_s": RISE, "rate_exponent": 0.15, "strength_kept": 0.9}
+RATE = {"rise_at_1000_per_s": RISE, "rate_exponent": 0.15}
 NOISE = {
     "restitution": 0.004, "permanent_depth_m_relative": 0.02, "dent_diameter_m_relative": 0.01,
 }  # fmt: skip
@@ -258,7 +258,7 @@ def test_what_needs_motion_does_nothing_in_a_press(problem):
 
 def test_a_rate_acts_in_a_press_by_the_stated_rate_only(problem):
     given = problem(IMPACTS + PRESSES.format(rate="10"))
-    rate = {"rise_at_1000_per_s": 0.5, "rate_exponent": 0.15, "strength_kept": 1.0}
+    rate = {"rise_at_1000_per_s": 0.5, "rate_exponent": 0.15}
     plain, with_it = cells(given), cells(given, "strain-rate-hardening", **rate)
     change = {k: with_it[k, o] - plain[k, o] for k, o in plain if o == "permanent_depth_m"}
     assert change[0] < -0.2

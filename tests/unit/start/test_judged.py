@@ -247,9 +247,7 @@ def test_a_table_that_is_thinned_ends_with_its_last_row(count) -> None:
 def test_the_inferred_constants_are_those_of_ludwik_and_of_cowper_and_symonds():
     constants = {
         "work-hardening": {"hardening_ratio": 0.8, "hardening_exponent": 0.4},
-        "strain-rate-hardening": {
-            "rise_at_1000_per_s": 1.5, "rate_exponent": 0.2, "strength_kept": 0.5,
-        },
+        "strain-rate-hardening": {"rise_at_1000_per_s": 1.5, "rate_exponent": 0.2},
     }  # fmt: skip
     stated = Pair(HARD, MILD.with_(Sy=300e6), 5e-3)
     pair = _flowing(stated, stated, constants)
