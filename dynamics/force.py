@@ -16,7 +16,7 @@ from .tabulated.bits import power
 
 # Places in the vector that describes the modified force.
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
-DAMPING, RADIATION, SHAPE, RETURN, RETARDED = range(6, 11)
+DAMPING, RADIATION, SHAPE, RETURN, DAMPING_EXPONENT = range(6, 11)
 N_FORCE = 11
 
 # The branch vector: what `set_peak` writes, the contact radius at the peak and whether the depth

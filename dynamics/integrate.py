@@ -55,7 +55,7 @@ def arrays_of(scene: Scene, settings: Settings = Settings()) -> c.Given:
     force[fo.EDGE] = force[fo.EDGE_DEPTH] = force[fo.EDGE_LIMIT] = math.inf
     force[fo.SHAPE], force[fo.RETURN] = scene.force.shape, scene.force.given_back
     force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
-    force[fo.RETARDED] = scene.force.retarded
+    force[fo.DAMPING_EXPONENT] = scene.force.damping_exponent
     factors = _factors(scene)
     if math.isfinite(scene.force.edge):
         force[fo.EDGE] = scene.force.edge

@@ -89,8 +89,8 @@ class ForceTransform:
     """Seam: what is done to the law's normal force; neutral by default.
 
     - `damping`: chi of F (1 + chi d'), Hunt and Crossley's form [s/m].
-    - `retarded`: q of chi (4/3 E' a 10 um / F)^q: at 1 the viscous force goes with the width, as a
-      time of retardation makes it (Kuwabara and Kono).
+    - `damping_exponent`: q of chi (4/3 E' a 10 um / F)^q: at 1 the viscous force goes with the
+      contact radius (Kuwabara and Kono).
     - `radiation`: kappa [m s/N]: waves sent into a half-space take F up by kappa (dF/d(depth))^2 d'
       (elastically 2 E' a): their power is kappa (dF/dt)^2.
     - `factors`: multiply the loading force, interpolated in ln(depth / R) between equally spaced
@@ -104,7 +104,7 @@ class ForceTransform:
     """
 
     damping: float = 0.0
-    retarded: float = 0.0
+    damping_exponent: float = 0.0
     radiation: float = 0.0
     factors: tuple[float, ...] = ()
     edge: float = math.inf

@@ -107,11 +107,11 @@ class StrengthTable:
 
     def peak(self, energy: float, strength: Array | None = None) -> float:
         """Depth [m] at which loading has taken up `energy` [J], at relative strengths or stated."""
-        known = self._log_work
+        work = self.work
         if strength is not None:
-            factors = self.factors(strength)[F_FORCE]
-            known = np.log(self._work_of(self.stated.force + np.log(factors)))
-        return float(np.exp(np.interp(math.log(energy), known, self.log_depth)))
+            work = self._work_of(self.stated.force + np.log(self.factors(strength)[F_FORCE]))
+        log_work = np.log(np.maximum(work, 1e-300))
+        return float(np.exp(np.interp(math.log(energy), log_work, self.log_depth)))
 
     def _work_of(self, log_force: Array) -> Array:
         d, f = self.depth, np.exp(log_force)
@@ -138,10 +138,6 @@ class StrengthTable:
         known = np.isfinite(logs).all(axis=(0, 2))
         levels, logs = levels[known], np.ascontiguousarray(logs[:, known])
         return levels, logs, PchipInterpolator(levels, logs, axis=1).derivative()(levels)
-
-    @cached_property
-    def _log_work(self) -> Array:
-        return np.log(np.maximum(self.work, 1e-300))
 
 
 _TABLES: dict[tuple[int, Pair], tuple[ContactLaw, StrengthTable]] = {}

@@ -185,9 +185,7 @@ def rate_prior(rises: Sequence[Rise]) -> Array:
     weight = np.exp(-0.5 * (rises_misfit(rises, np.expm1(at[0]), at[1]) + (away**2).sum(axis=0)))
     mean = (weight * at).sum(axis=(1, 2)) / weight.sum()
     apart = at - mean[:, None, None]
-    prior[:, 0] = mean
-    prior[:, 1] = np.sqrt((weight * apart**2).sum(axis=(1, 2)) / weight.sum())
-    return prior
+    return np.stack([mean, np.sqrt((weight * apart**2).sum(axis=(1, 2)) / weight.sum())], axis=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,4 +42,4 @@ class ContactDamping(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""
         chi, exponent = (values[p.name] for p in self.parameters)
-        return scene.with_(force=replace(scene.force, damping=chi, retarded=exponent))
+        return scene.with_(force=replace(scene.force, damping=chi, damping_exponent=exponent))

@@ -133,7 +133,7 @@ def slope_of(m, branch, depth, phase):
 
 
 @njit(cache=True, **PLAIN)
-def _width(m, branch, depth, phase):
+def _contact_radius(m, branch, depth, phase):
     """Contact radius [m]; in the recovery it falls as the root of the depth left, as Hertz's."""
     if phase == at.LOAD:
         return loading_radius(m, depth) if depth > 0.0 else 0.0
@@ -172,16 +172,16 @@ def _contact_of(m, w, z, seen):
         waves = resists * (seen[at.RATE] - body[at.S_PLATE] * f)
         waves /= 1.0 + resists * body[at.S_PLATE]
         f += waves
-    if force[fo.DAMPING] != 0.0 and f > 0.0:
+    if force[fo.DAMPING] != 0.0 and seen[at.STATIC] > 0.0:
         chi = force[fo.DAMPING]
-        if force[fo.RETARDED] != 0.0:
-            elastic = 4.0 / 3.0 * force[fo.MODULUS] * _width(m, branch, depth, phase)
-            chi *= (elastic * fo.DAMPING_DEPTH / seen[at.STATIC]) ** force[fo.RETARDED]
+        if force[fo.DAMPING_EXPONENT] != 0.0:
+            elastic = 4.0 / 3.0 * force[fo.MODULUS] * _contact_radius(m, branch, depth, phase)
+            chi *= (elastic * fo.DAMPING_DEPTH / seen[at.STATIC]) ** force[fo.DAMPING_EXPONENT]
         f += f * chi * seen[at.RATE]
     seen[at.RADIATED] = max(waves, -seen[at.STATIC])
     f = max(f, 0.0)
     if body[at.COMPLIANCE] < math.inf:
-        a = _width(m, branch, depth, phase)
+        a = _contact_radius(m, branch, depth, phase)
         stiffness = 2.0 * body[at.COMPLIANCE] * force[fo.MODULUS] * a
     mu = body[at.MU]
     if body[at.MU_STATIC] != body[at.MU]:

@@ -32,14 +32,17 @@ def risen(scene: Scene, table: StrengthTable, rise: float, exponent: float, *_ke
         # without a stated rate a press is what the strength was measured at
         pace = scene.press.rate / REFERENCE_RATE
         return np.full(table.depth.shape, 1.0 + (rise * pace**exponent if pace else 0.0))
-    fresh, strength = RATE * scene.approach.speed / table.radius, np.ones_like(table.depth)
-    for _ in range(2):  # a third changes restitution by less than 0.001
-        x = table.depth / table.peak(energy(scene), strength)
+
+    def turned_at(deepest: float) -> Array:
+        x = table.depth / deepest
         # beyond the turn straight in the logarithms, so that the table's nodes see no corner
         slower = np.where(x < 1.0, x**_SLOWING, 1.0 + _SLOWING * np.log(np.maximum(x, 1.0)))
-        rate = fresh * RULES.slowest**slower
-        strength = np.asarray(1.0 + rise * (rate / REFERENCE_RATE) ** exponent)
-    return strength
+        rate = RATE * scene.approach.speed * RULES.slowest**slower / table.radius
+        return np.asarray(1.0 + rise * (rate / REFERENCE_RATE) ** exponent)
+
+    # once more changes restitution by less than 0.001
+    work = energy(scene)
+    return turned_at(table.peak(work, turned_at(table.peak(work))))
 
 
 def rises_misfit(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:

@@ -157,6 +157,15 @@ def test_a_contact_with_a_time_of_retardation_gives_back_what_kuwabara_and_kono_
     assert blow_of(made, [law])["hertz"].restitution == pytest.approx(series, abs=5e-5)
 
 
+def test_tsujis_damping_gives_one_restitution_at_all_speeds():
+    values = {"damping_s_m": 0.02, "damping_depth_exponent": 1.25}
+    swept = {"impact_speed_m_s": [0.1, 1.0, 10.0]}
+    made = setup(mechanisms={"contact-damping": values}, sweep=swept)
+    found = made.swept(LAWS["hertz"])["restitution"]
+    assert found == pytest.approx(found[0], abs=1e-4)
+    assert 0.5 < found[0] < 0.99
+
+
 def test_a_ball_that_falls_on_a_flat_that_leans_is_braked_along_its_path():
     light = {"ball": {**STEEL, "density_kg_m3": 80.0}, "radius": 0.02, "speed": 0.0}
     speeds = []
