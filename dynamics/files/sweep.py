@@ -112,6 +112,12 @@ class SweepTable(InputTable):
         """Number of combinations; 0 without any condition."""
         return math.prod(len(v) for v in self.swept.values()) if self.swept else 0
 
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Each of `swept`, shape (count,): a row a combination, the first condition slowest."""
+        grid = np.meshgrid(*self.swept.values(), indexing="ij")
+        return {name: g.ravel() for name, g in zip(self.swept, grid, strict=True)}
+
 
 class _Keys(InputTable):
     sweep: dict[str, _Values]
@@ -203,9 +209,7 @@ def combinations(sweep: SweepTable, scene: Scene, *, stated: Stated) -> dict[str
 
     Each row arrives as a file with its numbers has it.
     """
-    names = list(sweep.swept)
-    grid = np.meshgrid(*sweep.swept.values(), indexing="ij")
-    given: dict[str, Array] = {name: g.ravel() for name, g in zip(names, grid, strict=True)}
+    given = sweep.columns
     rod = scene.striker.length > 0.0
     angles = np.radians(given["angle_deg"]) if "angle_deg" in given else np.asarray(stated.angle)
     heights = np.asarray(given.get("drop_height_m", stated.height))

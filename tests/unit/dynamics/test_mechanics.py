@@ -123,6 +123,7 @@ def test_a_blow_and_its_sweep_each_arrive_as_they_say(blow, swept, meets):
     stated = [made.plain(law).approach.speed, rows["impact_speed_m_s"][0]]
     came = [found.rebound_speed_m_s, rows["rebound_speed_m_s"][0]]
     assert np.array(came) / stated == pytest.approx(meets, rel=1e-6)
+    assert {name: tuple(rows[name]) for name in swept} == {k: tuple(v) for k, v in swept.items()}
 
 
 @pytest.mark.parametrize(("chi", "speed"), [(0.15, 1.0), (0.3, 5.0)])
