@@ -14,7 +14,7 @@ from ..cells import plain, value_of
 from ..heading import in_short
 from ..workbook import NumberCell
 from .headers import SheetColumn
-from .kinds import CELSIUS
+from .kinds import DEGREES
 from .words import SIGNED
 
 _CELL = re.compile(
@@ -30,7 +30,6 @@ _DECIMAL = re.compile(
     r"[+-]?\d+(?P<a>[.,])(\d{1,2}|\d{4,})(?!\d)|[+-]?0(?P<b>[.,])\d+"
     r"|[+-]?\d{1,3}(?:(,\d{3})+(?P<c>\.)|(\.\d{3})+(?P<d>,))\d+"
 )
-_ICE = 273.15
 
 
 def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: str) -> str:
@@ -114,8 +113,9 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
     if unit is None:
         column.unitless = True
         return None
-    if column.kind.quantity == "temperature" and unit in CELSIUS:
-        return Measured(number if column.spread else number + _ICE, std)
+    if column.kind.quantity == "temperature" and unit in DEGREES:
+        size, zero = DEGREES[unit]
+        return Measured(number if column.spread else number + zero, std).scaled(size)
     size = UNITS[column.kind.quantity].get(unit)
     return None if size is None else Measured(column.sign * number, std).scaled(size)
 

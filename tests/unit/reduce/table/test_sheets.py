@@ -283,6 +283,8 @@ OF_LABORATORIES = {
            "1,05;0,01;0,67;85;22\n2,10;0,01;1,25;193;22\n",
            {"impact_speed_m_s": 2.1, "restitution": 1.25 / 2.1, "peak_force_N": 1930.0,
             "temperature_K": 295.15}),
+    "us": ("v (ft/s),e,Plate temperature (°F)\n10,.65,68\n20,.60,212 °F\n",
+           {"impact_speed_m_s": 6.096, "restitution": 0.6, "temperature_K": 373.15}),
     "pl": ("Pomiar;Obciążenie [N];Średnica odcisku [mm];;\n;;d1;d2;dśr\n"
            "1;1000;0,62;0,64;0,63\n2;2000;0,87;0,89;0,99\n",
            {"load_N": 2000.0, "dent_diameter_m": 8.8e-4}),
