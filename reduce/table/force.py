@@ -78,14 +78,14 @@ def _numbers(
         if mass is not None:
             row["peak_force_N"] = values["peak_force_N"] = pulse.peak.scaled(mass)
     if change is not None:
+        # gravity took its part of what the pulse gave
+        change = replace(change, value=change.value - options.gravity_m_s2 * pulse.duration.value)
         values["speed_change_m_s"] = change
     if options.approach_speed_m_s is not None:
         approach = Measured(options.approach_speed_m_s, options.approach_speed_m_s_std)
         values["impact_speed_m_s"] = row["impact_speed_m_s"] = approach
         if change is not None:
-            # what turns the approach round: the change of speed less what gravity took
-            fall = options.gravity_m_s2 * pulse.duration.value
-            ratio = Measured(change.value - fall, change.std).over(approach)
+            ratio = change.over(approach)
             restitution = _possible(Measured(ratio.value - 1.0, ratio.std), source)
             values["restitution"] = row["restitution"] = restitution
     return values, row

@@ -285,7 +285,9 @@ def test_a_restitution_outside_0_to_1_is_refused(tmp_path):
     with pytest.raises(Refused, match="asks for a restitution of 3"):
         run(path, mass_kg=0.5, approach_speed_m_s=1.0)
     found = run(path, mass_kg=0.5, approach_speed_m_s=2.5)
-    assert 0.5 < found.values["restitution"].value < 0.7
+    e = found.values["restitution"].value
+    assert 0.5 < e < 0.7
+    assert found.values["speed_change_m_s"].value == pytest.approx(2.5 * (1.0 + e))
 
 
 def soft_ball(contact, *, rate, e=0.82, v=4.852, seed=1):
