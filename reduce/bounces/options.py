@@ -59,6 +59,12 @@ class BounceOptions(BallOptions):
         """What flies."""
         return self.ball_of(self.diameter_m)
 
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What is told of a ball whose drag is not known."""
+        told = "drag of the air left out: give mass_kg and diameter_m to take it off"
+        return (told,) if self.mass_kg is None or self.diameter_m is None else ()
+
     def fall_of(self, launch: float) -> Fall:
         """Return a flight launched at about a speed [m/s]; most of the drag acts near its ends."""
         return self.ball.fall(RULES.drag_speed * launch)

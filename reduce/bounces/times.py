@@ -95,8 +95,7 @@ def reduce_bounce_times(
             "error of an instant"
         )
         std = np.maximum(std, scatter)
-    if options.mass_kg is None or options.diameter_m is None:
-        notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
+    notes += options.left_out
     bounces = _bounces(times, std, chain, options, source)
     if not bounces:
         raise InputError(

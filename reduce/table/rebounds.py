@@ -52,7 +52,8 @@ def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
         spread = float(np.std(same, ddof=1) / math.sqrt(same.size)) if same.size > 1 else math.nan
         values[f"restitution_at_{speed:.4g}_m_s"] = Measured(float(same.mean()), spread)
     return Reduced(
-        source=path, values=values, trials=tuple(trials), notes=(f"{len(trials)} rebounds",),
+        source=path, values=values, trials=tuple(trials),
+        notes=(f"{len(trials)} rebounds", *options.left_out),
         draw=lambda to: draw_trials(("impact speed [m/s]", speeds), ("restitution", ratios), to),
     )  # fmt: skip
 

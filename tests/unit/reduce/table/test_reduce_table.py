@@ -185,6 +185,7 @@ def test_rebounds_find_their_drops_and_the_unit_of_each_column(tmp_path):
     )
     found = made_records.run(put(tmp_path / "a.csv", text), holds="rebounds")
     assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8] * 4)
+    assert any("drag of the air left out" in note for note in found.notes)
     for wrong, told in (
         ("Fallhöhe (m),h1 (cm)\n1,00,64,0\n", r"'1,00,64,0': 4 cells below 2 headers"),
         ("cm,up,up\n100 ,64,63\n50,32,31\n", "no column is named as a drop height"),
