@@ -173,16 +173,15 @@ def _reduce(
     pictures: dict[str, Path],
 ) -> None:  # fmt: skip
     """Reduce one file; its picture, or that of what was refused, is added to `pictures`."""
-    from ..core.inputs.names import trial_name
     from ..core.inputs.toml_input import parse_model
     from ..reduce.gates import Refused
     from ..reduce.output.into_set import store
     from ..reduce.output.record import write_record
-    from ..reduce.output.row import Row
+    from ..reduce.output.row import Row, name_of
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")
-        name = conditions.trial or trial_name(job.file)
+        name = conditions.trial or name_of(job.file, job.options)
         try:
             reduced = kind.run(job.file, job.options, source=job.source)
         except Refused as refused:

@@ -36,9 +36,10 @@ def names_a_file(text: str) -> bool:
     )
 
 
-def trial_name(path: Path) -> str:
-    """Return the name of a raw file as one that can name a trial."""
-    return re.sub(r'[/\\:*?"<>|\s]+', "_", path.stem).strip("_.") or "trial"
+def trial_name(path: Path, *parts: str) -> str:
+    """Return the name of a raw file, or of parts of it, as one that can name a trial."""
+    name = "-".join(filter(None, (path.stem, *parts)))
+    return re.sub(r'[/\\:*?"<>|\s]+', "_", name).strip("_.") or "trial"
 
 
 def _checked(text: str) -> str:

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ...core.inputs.names import ALLOWED, names_a_file, trial_name
+from ...core.inputs.names import ALLOWED, names_a_file
 from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.observables import LOAD
 from ...core.output import csv_text, finish_pending, locked, write_files
@@ -32,7 +32,7 @@ from ...recordings.trials import Trials
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from .record import write_record
-from .row import Row
+from .row import Row, name_of
 
 _TEXTS = ("trial", "striker", "spot", "note")
 _CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(STD_SUFFIX))
@@ -73,10 +73,11 @@ def store(
         after, curves = before, {}
         names = []
         _check_one_approach(reduced, row)
+        own = row.trial or name_of(reduced.source, options)
         # a reader need not label its trials: no row may take another one's place
         apart = len({trial.label for trial in reduced.trials}) == len(reduced.trials)
         for k, trial in enumerate(reduced.trials, start=1):
-            parts = (_name(reduced, row), trial.label, "" if apart else str(k))
+            parts = (own, trial.label, "" if apart else str(k))
             name = "-".join(filter(None, parts))
             if not names_a_file(name):  # a label may be the raw file's own
                 raise InputError(repr(name), key="trial", allowed=ALLOWED)
@@ -92,7 +93,7 @@ def store(
         kept, told = _kept_flows(after, _flow_path(reduced, folder), folder)
         _write_whole(after, text, curves, folder, kept)
     record, picture = write_record(
-        reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
+        reduced, folder / "reduced", own, kind=kind, options=options, trials=names
     )
     return Stored(tuple(names), record, picture, (*notes, *told), _flow_path(reduced, folder))
 
@@ -125,10 +126,6 @@ def store_each(
     if not written and not left_out:
         left_out.append("no raw file of the kind that the recipe reads")
     return written, left_out
-
-
-def _name(reduced: Reduced, row: Row) -> str:
-    return row.trial or trial_name(reduced.source)
 
 
 def _shape(kind: str, options: Mapping[str, Any]) -> Shape:

@@ -126,15 +126,17 @@ def test_tension_and_leeb_tables_into_a_set(tmp_path):
     stress = np.minimum(200e3 * strain / 100.0, 300.0) + 5.0 * strain
     rows = "\n".join(f"{a:.5f},{b:.4f}" for a, b in zip(strain, stress, strict=True))
     (tmp_path / "pull.csv").write_text("strain (%),stress (MPa)\n" + rows)
-    (tmp_path / "leeb.csv").write_text("first;second;third\n780;775;782\n")
+    (tmp_path / "leeb.csv").write_text("plate;1st;2nd\nA;780;775\nB;782;781\n")
     where = str(tmp_path / "set")
-    command = ["reduce", "table", str(tmp_path / "leeb.csv"), "--holds", "leeb", "--value", "1"]
-    assert run([*command, "--value-std", "3", "--into", where]) == 0
+    command = ["reduce", "table", str(tmp_path / "leeb.csv"), "--holds", "leeb", "--value", "2"]
+    for plate in "ABA":  # each a part of the file, the last once more
+        picked = [*command, "--select", f"plate={plate}", "--value-std", "3", "--into", where]
+        assert run(picked) == 0
     command = ["reduce", "table", str(tmp_path / "pull.csv"), "--holds", "tension"]
     assert run([*command, "--into", where]) == 0
     found = read(where, unfinished=True)
-    assert found.trials.observables["restitution"] == pytest.approx([0.78, 0.775, 0.782])
-    assert found.trials.impact_speed_m_s == pytest.approx([2.05] * 3)
+    assert found.trials.observables["restitution"] == pytest.approx([0.78, 0.775, 0.782, 0.781])
+    assert found.trials.impact_speed_m_s == pytest.approx([2.05] * 4)
     assert found.flows["target"].strength == pytest.approx(310e6, rel=0.03)
 
 
