@@ -12,6 +12,7 @@ import numpy as np
 
 from ...core.arrays import Array, Indices, Mask
 from ...core.observables import OBSERVABLES
+from ...core.tables import counted
 from ..curves.readings import Readings
 from ..rules import RULES
 from ..unknowns.repeats import Drift, Entries, Followed, drift_of, followed_of
@@ -145,7 +146,7 @@ def cells_of(
     place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
     found = {name: _compared(name, r, speeds, place, conditions) for name, r in readings.items()}
     dropped = sum(one.dropped for one in found.values())
-    text = f"{dropped} single values lie far off their repeats and were left out"
+    text = f"left out, far off their repeats: {counted(dropped, 'value')}"
     notes = (text,) if dropped else ()
     drifts = [
         drift_of(n, [(r.place, r.value, r.apart) for r in one.repeats], observables=len(found))

@@ -14,6 +14,7 @@ from ...core.errors import InputError
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
+from ...core.tables import counted
 from ...dynamics import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...dynamics.files.bodies import bodies_of
 from ...dynamics.files.second import second_of
@@ -293,7 +294,7 @@ def problem_of(
             key="trials.csv", allowed=f"one or more of {known}",
         )  # fmt: skip
     later = sum(c.after >= 0 for c in conditions)
-    blows = [f"{later} conditions are later blows on one place: they meet its crater"] * bool(later)
+    blows = [f"blows into an earlier crater: {counted(later, 'condition')}"] * bool(later)
     # the stiffness of what is taken as measured moves nothing that was read
     idle = (".E_Pa",) if unknown else ()
     noted = (n.note for n in nuisances if n.note and not n.name.endswith(idle))

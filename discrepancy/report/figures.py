@@ -10,6 +10,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
+from ...core.tables import counted
 from ..correction import Correction
 from ..findings import After
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint
@@ -131,9 +132,10 @@ def _lines(points: Sequence[SeriesPoint], against: Against) -> Iterator[list[Ser
 
 def _told(p: SeriesPoint, against: Against) -> str:
     unit = "" if p.unit == "-" else f" {p.unit}"
+    measured = f"measured {p.measured:.4g} ± {(p.high - p.low) / 2.0:.2g}{unit}"
     texts = [
         f"{p.striker}, {against.label.split(' [')[0]} {p.x[against.key]:.3g}",
-        f"measured {p.measured:.4g} ± {(p.high - p.low) / 2.0:.2g}{unit}, {p.trials} trials",
+        f"{measured}, {counted(p.trials, 'trial')}",
         f"{STATED} {p.as_stated:.4g}{unit}",
         f"{WITHOUT} {p.best_without:.4g}{unit}",
     ]
@@ -188,7 +190,7 @@ def path(history: Sequence[After]) -> str:
             panel.marker(float(places[k]), value, marker, colour, full=name == last)
     for place, one in zip(places.tolist(), history, strict=True):
         panel.text(place, f"after session {one.batch:g}")
-        panel.text(place, f"{one.trials} trials", line=2)
+        panel.text(place, counted(one.trials, "trial"), line=2)
     return figure(
         [panel], "probability of each explanation after each session", width=_WIDTH, height=216.0
     )

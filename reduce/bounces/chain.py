@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.tables import counted
 from ..rules import RULES
 from ..shared.regression import robust_regression, robust_std
 
@@ -141,25 +142,22 @@ def chain_of(times: Array) -> Chain | None:
     _, kept, single = found
     if len(kept) < 3:
         return None
-    notes = []
     extra = sum(kept[0] < i < kept[-1] for i in set(range(used.size)) - set(kept))
-    if extra:
-        notes.append(f"{extra} instants between bounces are left out as echoes or knocks")
     outside = times.size - len(kept) - extra
-    if outside:
-        notes.append(f"{outside} instants before or after the run are left out")
     missed = tuple(not one for one in single)
-    if any(missed):
-        notes.append(f"{sum(missed)} bounces were not recorded; those next to them are left out")
     single, stray = _without_strays(used, kept, single)
-    if stray:
-        notes.append(f"{stray} intervals stray from the course of the others and are left out")
     gaps = dict(zip(kept, missed, strict=False))
     kept, single, ends = _without_false_ends(used, kept, single)
-    if ends:
-        notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
+    told = (
+        (extra, "instant", "left out as echoes or knocks: {} between bounces"),
+        (outside, "instant", "left out: {} before or after the run"),
+        (sum(missed), "bounce", "not recorded: {}; neighbours left out"),
+        (stray, "interval", "left out, off the course of the others: {}"),
+        (ends, "instant", "left out, off the course of the run: {} at its ends"),
+    )
+    notes = tuple(text.format(counted(count, what)) for count, what, text in told if count)
     missed = tuple(gaps[k] for k in kept[:-1])
-    run = Chain(np.asarray(times), kept, single, missed, _typical(used, found), tuple(notes))
+    run = Chain(np.asarray(times), kept, single, missed, _typical(used, found), notes)
     # taps, steps: among as many instants some hang together
     return None if run.by_luck(used.size) > 0.5 else run
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
+from ...core.tables import counted
 from ..measured import ZERO, Measured, Trial
 from ..rules import RULES
 from ..shared.regression import unit_covariance
@@ -204,7 +205,7 @@ def _told(record: PressRecord, presses: tuple[ReducedPress, ...]) -> list[str]:
     largest = max(presses, key=lambda p: p.load.value)
     told = []
     if record.missed:
-        told.append(f"{record.missed} rows without a load or a depth are left out")
+        told.append(f"left out, without a load or a depth: {counted(record.missed, 'row')}")
     if len(presses) > 1:
         told.append(
             f"{len(presses)} cycles; what the row says is of the largest, as if it were the only: "
