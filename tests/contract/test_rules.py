@@ -79,7 +79,6 @@ EXACT = {
     "reduce/scan/picture.py": "UM",
     "reduce/table/cells.py": "OUT_OF_RANGE DAY",
     "reduce/table/leeb.py": "_LEEB_SPEED",
-    "reduce/table/sheet/cell.py": "_ICE",
     "start/measured.py": "_STANDARD_GRAVITY",
 }
 

@@ -51,7 +51,7 @@ def reduced(file: Path) -> tuple[Reduced, Row, dict[str, Any]]:
 
 def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
     """Write the set; the number of trials made, and a line for each run left out."""
-    items = [(file.name, partial(reduced, file)) for file in sorted(folder.rglob("*.xls"))]
+    items = [(file.name, partial(reduced, file)) for file in sorted(folder.rglob("*blu*.xls"))]
     setup = SetFile.model_validate(SETUP)
     written, left_out = store_each(items, target, kind="table", setup=setup)
     return sum(len(done.trials) for done in written), left_out

@@ -60,7 +60,7 @@ def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
     items = [(f.name, partial(reduced, f)) for f in sorted(folder.rglob("[0-9]*-M.csv"))]
     setup = SetFile.model_validate(SETUP)
     written, left_out = store_each(items, target, kind="table", setup=setup)
-    return len(written), left_out
+    return sum(len(done.trials) for done in written), left_out
 
 
 if __name__ == "__main__":

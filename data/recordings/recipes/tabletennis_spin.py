@@ -73,7 +73,7 @@ def recipe(archive: Path, folder: Path, count: int = 300) -> tuple[int, list[str
         items = [(line.split(",")[0], partial(reduced, raw, Path(place), line)) for line in lines]
         setup = SetFile.model_validate(SETUP)
         written, left_out = store_each(items, folder, kind="mocap", setup=setup)
-    return len(written), left_out
+    return sum(len(done.trials) for done in written), left_out
 
 
 if __name__ == "__main__":
