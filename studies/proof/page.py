@@ -200,7 +200,7 @@ def _history(runs: list[dict[str, Any]]) -> list[str]:
         for name in asked:
             found = [s for s in run["scores"] if s["name"].startswith(name) and s["of"]]
             hits, of = (sum(s[k] for s in found) for k in ("hits", "of"))
-            cells.append(f"{100.0 * hits / of:.1f} % ({hits} of {of})" if of else "-")
+            cells.append(f"{100.0 * hits / of:.1f} % of {of}" if of else "-")
         lines.append(
             f"| `{run['tree'][:7]}`, {run['date']} | {run['sets']} | {' | '.join(cells)} |"
         )
