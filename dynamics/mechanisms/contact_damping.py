@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ..force import DAMPING_DEPTH
 from ..scene import Scene
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
@@ -14,7 +15,10 @@ class ContactDamping(Mechanism):
 
     name = "contact-damping"
     title = "the contact loses energy by viscosity"
-    equations = "F (1 + chi d'), chi = chi_10 (4/3 E' a 10 um/F)^q, elastically (10 um/d)^q"
+    equations = (
+        "F (1 + chi d'), chi = chi_10 (4/3 E' a 10 um/F)^q, elastically (10 um/d)^q; from q = 1 on "
+        "10 um becomes the elastic depth at 1 m/s"
+    )
     parameters = (
         Parameter(
             "damping_s_m", "s/m", 0.003, 1.0, "log", 0.0,
@@ -25,7 +29,8 @@ class ContactDamping(Mechanism):
             "damping_depth_exponent", "-", 0.0, 1.25, "linear", 0.0,
             "0 for a loss that follows the speed alone (Hunt and Crossley 1975), 1 for a time of "
             "retardation, 2 E' a tau d' (Kuwabara and Kono, Jpn. J. Appl. Phys. 26, 1230), 1.25 "
-            "for one restitution at all speeds (Tsuji and others, Powder Technol. 71, 239)",
+            "for one restitution at all speeds and masses (Tsuji and others, Powder Technol. 71, "
+            "239)",
             nodes=3,
             literature=Literature(0.0, "Hunt and Crossley 1975"),
         ),
@@ -42,4 +47,12 @@ class ContactDamping(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""
         chi, exponent = (values[p.name] for p in self.parameters)
+        # chi_10 is a metal's up to an exponent of 1; at Tsuji's the depths at one speed are alike
+        chi *= (_at_1_m_s(scene) / DAMPING_DEPTH) ** max(5.0 * (exponent - 1.0), 0.0)
         return scene.with_(force=replace(scene.force, damping=chi, damping_exponent=exponent))
+
+
+def _at_1_m_s(scene: Scene) -> float:
+    """Elastic depth of a blow of 1 m/s [m]."""
+    stiffness = 4.0 / 3.0 * scene.pair.E_reduced * scene.pair.R**0.5
+    return float((1.25 * scene.striker.mass / stiffness) ** 0.4)

@@ -158,9 +158,9 @@ def test_a_contact_with_a_time_of_retardation_gives_back_what_kuwabara_and_kono_
     assert blow_of(made, [law])["hertz"].restitution == pytest.approx(series, abs=5e-5)
 
 
-def test_tsujis_damping_gives_one_restitution_at_all_speeds():
+def test_tsujis_damping_gives_one_restitution_at_all_speeds_and_masses():
     values = {"damping_s_m": 0.02, "damping_depth_exponent": 1.25}
-    swept = {"impact_speed_m_s": [0.1, 1.0, 10.0]}
+    swept = {"impact_speed_m_s": [0.1, 1.0, 10.0], "mass_kg": [1e-4, 0.1]}
     made = setup(mechanisms={"contact-damping": values}, sweep=swept)
     found = made.swept(LAWS["hertz"])["restitution"]
     assert found == pytest.approx(found[0], abs=1e-4)
