@@ -238,7 +238,7 @@ def test_drop_with_drag(followed: Callable[[str], dict[str, Any]]) -> None:
     heights = RAW / SOUNDS / "first_bounce_heights.csv"
     words = "--holds rebounds --select ball=golf --mass-kg 0.0459 --diameter-m 0.0427 --out v"
     assert run(["reduce", "table", str(heights), *words.split()]) == 0
-    values = json.loads(Path("v/first_bounce_heights-table.json").read_text())["values"]
+    values = json.loads(Path("v/first_bounce_heights-golf-table.json").read_text())["values"]
     seen = [v["value"] for k, v in values.items() if k.startswith("restitution")]
     assert (round(min(seen), 3), round(max(seen), 3)) == (0.895, 0.900)
     assert off.mean() == pytest.approx(sum(seen) / len(seen), abs=0.004)
