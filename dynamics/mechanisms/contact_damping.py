@@ -47,7 +47,8 @@ class ContactDamping(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""
         chi, exponent = (values[p.name] for p in self.parameters)
-        # chi_10 is a metal's up to an exponent of 1; at Tsuji's the depths at one speed are alike
+        # chi_10 is the metal's up to its time of retardation, 1; Tsuji's, 1.25, goes with
+        # sqrt(m/k), which is the elastic depth at one speed to the power of 1.25
         chi *= (_at_1_m_s(scene) / DAMPING_DEPTH) ** max(5.0 * (exponent - 1.0), 0.0)
         return scene.with_(force=replace(scene.force, damping=chi, damping_exponent=exponent))
 
