@@ -313,7 +313,7 @@ class Setup:
         found = impacts(plain, **given, settings=self.settings, asked=asked, change=change)
         # a height of fall is a speed to `impacts`
         heights = {k: v for k, v in self.sweep.columns.items() if k not in found.columns}
-        found = Impacts(heights | found.columns)
+        found = Impacts({**heights, **found.columns})
         if self.second is None:
             return found
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]

@@ -114,8 +114,8 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
         column.unitless = True
         return None
     if column.kind.quantity == "temperature" and unit in DEGREES:
-        size, zero = DEGREES[unit]
-        return Measured(number if column.spread else number + zero, std).scaled(size)
+        kelvin, zero = DEGREES[unit]
+        return Measured(number if column.spread else number + zero, std).scaled(kelvin)
     size = UNITS[column.kind.quantity].get(unit)
     return None if size is None else Measured(column.sign * number, std).scaled(size)
 
