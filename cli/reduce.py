@@ -173,15 +173,16 @@ def _reduce(
     pictures: dict[str, Path],
 ) -> None:  # fmt: skip
     """Reduce one file; its picture, or that of what was refused, is added to `pictures`."""
+    from ..core.inputs.names import trial_name
     from ..core.inputs.toml_input import parse_model
     from ..reduce.gates import Refused
     from ..reduce.output.into_set import store
     from ..reduce.output.record import write_record
-    from ..reduce.output.row import Row, name_of
+    from ..reduce.output.row import Row
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")
-        name = conditions.trial or name_of(job.file, job.options)
+        name = conditions.trial or trial_name(job.file, **job.options)
         try:
             reduced = kind.run(job.file, job.options, source=job.source)
         except Refused as refused:

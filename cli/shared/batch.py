@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.csv_table import Problems, read_text_table
+from ...core.inputs.names import trial_name
 from ...reduce.images.picture_file import PICTURES, natural_order
 from ...reduce.kinds import Kind
-from ...reduce.output.row import name_of
 from .places import misused
 
 _FILE = "file"
@@ -41,7 +41,7 @@ def jobs_of(
     if not jobs:
         needed = "files, folders of them, or --list with a table of them"
         raise misused("no raw file", key="FILE", allowed=needed)
-    names = [name_of(job.file, job.options) for job in jobs]
+    names = [trial_name(job.file, **job.options) for job in jobs]
     twice = next((name for name in names if names.count(name) > 1), "")
     if twice:
         needed = "files of different names: they name the trials"

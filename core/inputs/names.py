@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator
 
@@ -36,9 +36,10 @@ def names_a_file(text: str) -> bool:
     )
 
 
-def trial_name(path: Path, *parts: str) -> str:
-    """Return the name of a raw file, or of parts of it, as one that can name a trial."""
-    name = "-".join(filter(None, (path.stem, *parts)))
+def trial_name(path: Path, /, **options: Any) -> str:
+    """Return the name of a raw file, and of what is picked of it, as one that can name a trial."""
+    picked = (str(options.get(key) or "").rpartition("=")[2] for key in ("sheet", "select"))
+    name = "-".join(filter(None, (path.stem, *picked)))
     return re.sub(r'[/\\:*?"<>|\s]+', "_", name).strip("_.") or "trial"
 
 

@@ -48,12 +48,8 @@ class ContactDamping(Mechanism):
         """Replace the transform of the normal force."""
         chi, exponent = (values[p.name] for p in self.parameters)
         # chi_10 is the metal's up to its time of retardation, 1; Tsuji's, 1.25, goes with
-        # sqrt(m/k), which is the elastic depth at one speed to the power of 1.25
-        chi *= (_at_1_m_s(scene) / DAMPING_DEPTH) ** max(5.0 * (exponent - 1.0), 0.0)
+        # sqrt(m/k), which is the elastic depth at 1 m/s to the power of 1.25
+        stiffness = 4.0 / 3.0 * scene.pair.E_reduced * scene.pair.R**0.5
+        depth = (1.25 * scene.striker.mass / stiffness) ** 0.4
+        chi *= (depth / DAMPING_DEPTH) ** max(5.0 * (exponent - 1.0), 0.0)
         return scene.with_(force=replace(scene.force, damping=chi, damping_exponent=exponent))
-
-
-def _at_1_m_s(scene: Scene) -> float:
-    """Elastic depth of a blow of 1 m/s [m]."""
-    stiffness = 4.0 / 3.0 * scene.pair.E_reduced * scene.pair.R**0.5
-    return float((1.25 * scene.striker.mass / stiffness) ** 0.4)

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ...core.inputs.names import ALLOWED, names_a_file
+from ...core.inputs.names import ALLOWED, names_a_file, trial_name
 from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.observables import LOAD
 from ...core.output import csv_text, finish_pending, locked, write_files
@@ -32,7 +32,7 @@ from ...recordings.trials import Trials
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from .record import write_record
-from .row import Row, name_of
+from .row import Row
 
 _TEXTS = ("trial", "striker", "spot", "note")
 _CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(STD_SUFFIX))
@@ -73,7 +73,7 @@ def store(
         after, curves = before, {}
         names = []
         _check_one_approach(reduced, row)
-        own = row.trial or name_of(reduced.source, options)
+        own = row.trial or trial_name(reduced.source, **options)
         # a reader need not label its trials: no row may take another one's place
         apart = len({trial.label for trial in reduced.trials}) == len(reduced.trials)
         for k, trial in enumerate(reduced.trials, start=1):

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
-
 from pydantic import Field
 
-from ...core.inputs.names import FileNameIfAny, trial_name
+from ...core.inputs.names import FileNameIfAny
 from ...core.inputs.toml_input import InputTable
 from ...recordings.columns import VARIED
 
@@ -40,9 +36,3 @@ class Row(InputTable):
         """What else was varied, by column."""
         pairs = (pair.partition("=") for pair in self.x.split(",") if pair)
         return {f"{VARIED}{name.strip()}": value.strip() for name, _, value in pairs}
-
-
-def name_of(raw: Path, options: Mapping[str, Any]) -> str:
-    """Return what a raw file names: sheets of a workbook and rows that are picked are apart."""
-    parts = (str(options.get(key) or "").rpartition("=")[2] for key in ("sheet", "select"))
-    return trial_name(raw, *parts)

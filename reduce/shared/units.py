@@ -40,11 +40,14 @@ UNITS: dict[str, dict[str, float]] = {
                "ksi": 6894757.293},
     "energy": {"J": 1.0, "mJ": 1e-3, "kJ": 1e3},
     "stiffness": {"N/m": 1.0, "N/mm": 1e3, "mN/nm": 1e6, "N/um": 1e6, "N/µm": 1e6, "kN/mm": 1e6},
-    "temperature": {"K": 1.0},
+    "temperature": {"K": 1.0, "°C": 1.0, "C": 1.0, "degC": 1.0, "°F": 5.0 / 9.0, "degF": 5.0 / 9.0},
     "mass": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
     "number": {"": 1.0, "-": 1.0, "%": 1e-2},
 }  # fmt: skip
 """Quantity, and its units in those of the recording set (kg among accelerations: 1000 g)."""
+
+ZERO = {"°C": 273.15, "C": 273.15, "degC": 273.15, "°F": 459.67, "degF": 459.67}
+"""How far above 0 K a scale begins, in its degrees."""
 
 
 def quantity_of(unit: str) -> str:

@@ -9,12 +9,11 @@ from statistics import median
 
 from ....recordings.columns import CONDITIONS, MEASURED
 from ...measured import Measured
-from ...shared.units import UNITS
+from ...shared.units import UNITS, ZERO
 from ..cells import plain, value_of
 from ..heading import in_short
 from ..workbook import NumberCell
 from .headers import SheetColumn
-from .kinds import DEGREES
 from .words import SIGNED
 
 _CELL = re.compile(
@@ -113,11 +112,10 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
     if unit is None:
         column.unitless = True
         return None
-    if column.kind.quantity == "temperature" and unit in DEGREES:
-        kelvin, zero = DEGREES[unit]
-        return Measured(number if column.spread else number + zero, std).scaled(kelvin)
-    size = UNITS[column.kind.quantity].get(unit)
-    return None if size is None else Measured(column.sign * number, std).scaled(size)
+    if (size := UNITS[column.kind.quantity].get(unit)) is None:
+        return None
+    zero = 0.0 if column.spread else ZERO.get(unit, 0.0)
+    return Measured(column.sign * number + zero, std).scaled(size)
 
 
 def turn_signs(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn], sheet: str) -> None:

@@ -12,7 +12,7 @@ from ....recordings.columns import CONDITIONS
 from ...shared.units import quantity_of
 from ..heading import is_unit
 from . import kinds
-from .kinds import DEGREES, kind_of, unit_of
+from .kinds import kind_of, unit_of
 from .words import (
     APPROACHES,
     BALL,
@@ -178,7 +178,7 @@ def _one(parts: Sequence[tuple[str, bool]], unit: str) -> str:
 def _is_units(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell]
     return bool(filled) and all(
-        is_unit(cell) or cell.strip("()[] ") in (*DEGREES, "-", "–", "") for cell in filled
+        is_unit(cell) or cell.strip("()[] ") in ("-", "–", "") for cell in filled
     )
 
 

@@ -12,17 +12,12 @@ from ..heading import in_short
 from . import words
 from .words import KINDS, SheetKind, bare, letters
 
-DEGREES = {
-    **dict.fromkeys(("°C", "C", "degC"), (1.0, 273.15)),
-    **dict.fromkeys(("°F", "degF"), (5.0 / 9.0, 459.67)),
-}
-"""Units of a temperature that do not begin at 0 K: size [K], and how far above it their zero is."""
 _UNIT_WITHIN = re.compile(r"(?:[\[(]\s*(?:(?:in|en)\s)?|\b(?:in|en|w|em)\s)\s*([^\s\]),;]+)")
 _BRACKETED = re.compile(r"[\[(][^\])]*([\])]|$)")
 _FORMULA = re.compile(r"\s*=[^=()\[\]]*(?=[(\[]|$)")
 """Such as e = Vr/Vi."""
 _PER_SECOND = re.compile(r"m[ ·.]?s\^?[-⁻][1¹]|(?<=_)m_s\b")
-_UNITS = {unit for known in UNITS.values() for unit in known} | DEGREES.keys()
+_UNITS = {unit for known in UNITS.values() for unit in known}
 _UNIT_AT_END = re.compile(
     r"[\[(,/]\s*((in|en)\s+)?(?P<a>[^\])(\[,/]{1,6}(?:/s|/sec)?)\s*[\])]?\s*$"
     r"|\b(in|en) (?P<b>\S{1,4})$"
@@ -70,7 +65,7 @@ def kind_of(header: str) -> SheetKind | None:
     unit = said_unit(header).strip("-%1") if len(text) == 1 else ""
     quantity = quantity_of(unit)
     other = quantity != found.quantity if quantity else found.quantity == "number"
-    return None if other and unit not in DEGREES and re.fullmatch(r"[^\s=]+", unit) else found
+    return None if other and re.fullmatch(r"[^\s=]+", unit) else found
 
 
 def is_spread(header: str) -> bool:
@@ -116,16 +111,11 @@ def said_unit(header: str) -> str:
     return in_short((found["a"] or found["b"]).strip()) if found else ""
 
 
-def known_units(kind: SheetKind) -> list[str]:
-    """Return the units that a quantity of a sheet may be in."""
-    return [*UNITS[kind.quantity], *(DEGREES if kind.quantity == "temperature" else ())]
-
-
 def unit_of(header: str, kind: SheetKind) -> str | None:
     """Return the unit in a header; None where it names none that is known."""
     if kind.quantity in ("text", "number"):
         return "%" if "%" in header else ""
-    known = known_units(kind)
+    known = UNITS[kind.quantity]
     if (said := said_unit(header)) in known:
         return said
     plain = _SPREAD.sub("", header.replace("_std", "")).strip(" _")

@@ -25,7 +25,7 @@ from ..picture import draw_trials
 from . import words
 from .cell import number_in, why_not
 from .headers import ABOVE, NOT_UNDERSTOOD, SheetColumn
-from .kinds import SUMMARY, SUMS, kind_of, known_units
+from .kinds import SUMMARY, SUMS, kind_of
 from .trial import (
     Readings,
     along_normal,
@@ -146,7 +146,7 @@ def trials_of(sheet: SheetRows, told: Sequence[tuple[str, str]]) -> Sheet:
     if wrong := [c for c in columns if c.unitless]:
         raise InputErrors(tuple(
             InputError(c.no_unit, source=sheet.source, key=c.header,
-                       allowed=", ".join(known_units(c.kind))) for c in wrong
+                       allowed=", ".join(UNITS[c.kind.quantity])) for c in wrong
         ))  # fmt: skip
     if not found.trials:
         why = f"; {found.left[0]}" if found.left else ""
