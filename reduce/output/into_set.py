@@ -100,32 +100,26 @@ def store(
 
 def store_each(
     items: Iterable[tuple[str, Callable[[], tuple[Reduced, Row, Mapping[str, Any]]]]],
-    folder: Path,
-    *,
-    kind: str,
-    setup: SetFile,
-) -> tuple[list[Stored], list[str]]:
+    folder: Path, *, kind: str, setup: Mapping[str, Any],
+) -> tuple[int, list[str]]:  # fmt: skip
     """Write many raw files into one set, those that show nothing left out.
 
     An item is the name of a raw file and what reduces it: the reduction, the conditions that the
-    file does not tell, the options that were used. Returns what was written, and a line for each
-    raw file that was left out.
+    file does not tell, the options that were used. Returns how many trials were written, and a line
+    for each raw file that was left out.
     """
-    written: list[Stored] = []
-    left_out = []
+    made, left_out = 0, list[str]()
+    new: SetFile | None = SetFile.model_validate(setup)
     for name, make in items:
         try:
             reduced, row, options = make()
-            done = store(
-                reduced, folder, row, kind=kind, options=options,
-                setup=None if written else setup,
-            )  # fmt: skip
-            written.append(done)
+            done = store(reduced, folder, row, kind=kind, options=options, setup=new)
+            made, new = made + len(done.trials), None
         except InputError as error:
             left_out += [f"{name}: {line}" for line in str(error).splitlines()]
-    if not written and not left_out:
+    if new and not left_out:
         left_out.append("no raw file of the kind that the recipe reads")
-    return written, left_out
+    return made, left_out
 
 
 def _shape(kind: str, options: Mapping[str, Any]) -> Shape:

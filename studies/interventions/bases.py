@@ -18,7 +18,6 @@ from typing import Any
 
 from ...core.errors import InputError
 from ...core.output import csv_text
-from ...recordings import SetFile
 from ...recordings.shipped import FOLDER, shipped_sets
 from ...reduce.kinds import load_kind
 from ...reduce.output.into_set import store_each
@@ -107,7 +106,7 @@ def _golf_sounds(raw: Path, folder: Path, *, drag_off: float = 1.0) -> None:
                 times = [str(row[column]) for row in rows if row[column] != ""]
                 file.write_text("\n".join(["time_s", *times]) + "\n")
                 items.append((file.stem, partial(_run, file, options)))
-        store_each(items, folder, kind="table", setup=SetFile.model_validate(_GOLF))
+        store_each(items, folder, kind="table", setup=_GOLF)
 
 
 def _run(file: Path, options: dict[str, Any]) -> tuple[Reduced, Row, dict[str, Any]]:

@@ -13,7 +13,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.output.into_set import store_each
 from dentscope.reduce.output.recipe import run_recipe
@@ -52,9 +51,7 @@ def reduced(file: Path) -> tuple[Reduced, Row, dict[str, Any]]:
 def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
     """Write the set; the number of trials made, and a line for each run left out."""
     items = [(file.name, partial(reduced, file)) for file in sorted(folder.rglob("*blu*.xls"))]
-    setup = SetFile.model_validate(SETUP)
-    written, left_out = store_each(items, target, kind="table", setup=setup)
-    return sum(len(done.trials) for done in written), left_out
+    return store_each(items, target, kind="table", setup=SETUP)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from dentscope.core.errors import InputError
-from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.output.into_set import store_each
 from dentscope.reduce.output.recipe import run_recipe
@@ -71,9 +70,7 @@ def recipe(archive: Path, folder: Path, count: int = 300) -> tuple[int, list[str
     with zipfile.ZipFile(archive) as raw, tempfile.TemporaryDirectory() as place:
         lines = raw.read("index.csv").decode().split()[1 : count + 1]
         items = [(line.split(",")[0], partial(reduced, raw, Path(place), line)) for line in lines]
-        setup = SetFile.model_validate(SETUP)
-        written, left_out = store_each(items, folder, kind="mocap", setup=setup)
-    return sum(len(done.trials) for done in written), left_out
+        return store_each(items, folder, kind="mocap", setup=SETUP)
 
 
 if __name__ == "__main__":
