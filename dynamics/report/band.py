@@ -194,20 +194,23 @@ def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup,
     """Yield key, share of a standard deviation, and the set-ups one up and one down."""
     from ..files.setup import setup_of
 
+    def at(path: tuple[str, ...], value: float) -> Setup | None:
+        try:
+            found = setup_of(with_value(setup.content, path, value), source=setup.source)
+            found.scene(law)
+        except InputError:  # a Poisson's ratio beyond 0.5
+            return None
+        return found
+
     for path, quantity in _uncertain(setup):
         for share in RULES.held:
-            values = [_moved(quantity, sign * share) for sign in (1.0, -1.0)]
-            try:
-                up, down = (
-                    setup_of(with_value(setup.content, path, value), source=setup.source)
-                    for value in values
-                )
-                for moved in (up, down):
-                    moved.scene(law)
-            except InputError:  # a Poisson's ratio beyond 0.5
-                continue
-            yield ".".join(path), share, up, down
-            break
+            up, down = (at(path, _moved(quantity, sign * share)) for sign in (1.0, -1.0))
+            if up is not None and down is not None:
+                yield ".".join(path), share, up, down
+                break
+        else:  # at a bound: to one side
+            if up is not None or down is not None:
+                yield ".".join(path), 0.5 * share, up or setup, down or setup
 
 
 def _moved(quantity: Quantity, by: float) -> float:
