@@ -282,7 +282,10 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
 
 
 def _spread(fitted: Fit) -> Array:
-    """Posterior standard deviation of each parameter, as a share of its prior's range."""
+    """Posterior standard deviation of each parameter, as a share of its prior's range.
+
+    That of one of two is infinite: no window leaves one of them out.
+    """
     places, weight = fitted.grid.places(), fitted.weight
     away = places - weight @ places
-    return np.asarray(np.sqrt(weight @ away**2))
+    return np.where(fitted.grid.either, np.inf, np.sqrt(weight @ away**2))

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
-from ...core.arrays import Array
+from ...core.arrays import Array, Mask
 from ...dynamics.mechanisms.base import Constants, Parameter
 from ..rules import RULES
 
@@ -22,6 +22,8 @@ FINE = dict(RULES.grid_places)
 IN_WINDOW = dict(RULES.window_nodes)
 """Least nodes per parameter of a grid over a part of the prior, by the number of parameters; 2 for
 more: over a window the response is nearly straight."""
+ENDS = np.array([0.0, 1.0])
+"""Places of what is one of two."""
 
 
 class Axis(NamedTuple):
@@ -52,24 +54,32 @@ class Grid:
         )
 
     @cached_property
+    def either(self) -> Mask:
+        """Which axes have two places alone, (axes,)."""
+        return np.array([a.parameter.scale == "either" for a in self.axes], dtype=bool)
+
+    @cached_property
     def coarse(self) -> list[Array]:
         """Places in (0, 1) of the nodes of each axis."""
         if not self.window:
             return [np.linspace(0.0, 1.0, a.parameter.nodes) for a in self.axes]
-        least = IN_WINDOW.get(len(self.axes), 2)
+        least = IN_WINDOW.get(int(np.sum(~self.either)), 2)
         return [
+            ENDS if one else
             np.linspace(low, high, max(least, math.ceil((p.nodes - 1) * (high - low)) + 1))
-            for (_, p), (low, high) in zip(self.axes, self.window, strict=True)
-        ]
+            for one, (_, p), (low, high) in zip(self.either, self.axes, self.window, strict=True)
+        ]  # fmt: skip
 
     @cached_property
     def fine(self) -> list[Array]:
         """Places of the refined grid: middles of equal shares of what it covers."""
-        n = FINE.get(len(self.axes), 5)
+        n = FINE.get(int(np.sum(~self.either)), 5)
         share = (np.arange(n) + 0.5) / n
-        if not self.window:
-            return [share for _ in self.axes]
-        return [low + (high - low) * share for low, high in self.window]
+        window = self.window or [(0.0, 1.0)] * len(self.axes)
+        return [
+            ENDS if one else low + (high - low) * share
+            for one, (low, high) in zip(self.either, window, strict=True)
+        ]
 
     @property
     def log_volume(self) -> float:

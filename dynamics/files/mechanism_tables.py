@@ -171,7 +171,8 @@ def asked_in(file: SetupFile, *, swept: bool = False) -> Asked:
     mechanisms = tuple(table.mechanism for table in tables.values())
     constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
     highest = max(value_of(height, 0.0), *heights, 0.0)
-    return Asked(mechanisms, constants, around, 2.0 * file.gravity_m_s2.value * highest)
+    lightest = min([*file.sweep.mass_kg, *(s.mass_kg.value for s in file.strikers.values())])
+    return Asked(mechanisms, constants, around, 2.0 * file.gravity_m_s2.value * highest, lightest)
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
@@ -189,10 +190,16 @@ def mistakes_of(file: SetupFile) -> Iterator[Mistake]:
     if {"rod-longitudinal-waves", "rod-flexural-vibration"} <= tables.keys():
         told = "given beside mechanisms.rod-flexural-vibration, which rings along the axis as well"
         yield "mechanisms.rod-longitudinal-waves", told, one
-    loss = getattr(tables.get("impact-speed-loss"), "loss_growth", None)
-    if loss is not None and not file.sweep.drop_height_m:
-        told = f"{loss.value:g} does nothing at one height"
-        yield "mechanisms.impact-speed-loss.loss_growth", told, "with sweep.drop_height_m"
+    several, unlike = "several strikers", len(file.strikers) > 1
+    for name, key, needed, there in (
+        ("impact-speed-loss", "loss_growth", "sweep.drop_height_m", file.sweep.drop_height_m),
+        ("impact-speed-loss", "loss_by_mass", several, unlike or file.sweep.mass_kg),
+        ("truncated-tip", "flat_by_radius", several, unlike),
+    ):
+        stated = getattr(tables.get(name), key, None)
+        if stated is not None and not there:
+            told = f"{stated.value:g} does nothing alone"
+            yield f"mechanisms.{name}.{key}", told, f"with {needed}"
     asked = asked_in(file)
     for m in asked.mechanisms:
         size, known = m.parameters[0], m.stated(asked.around)

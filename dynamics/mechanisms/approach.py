@@ -22,7 +22,7 @@ class ImpactSpeedLoss(Mechanism):
 
     name = "impact-speed-loss"
     title = "the striker arrives slower than its height of fall says"
-    equations = "v = sqrt(2 g H) (1 - zeta)^((H/H_max)^p)"
+    equations = "v = sqrt(2 g H) (1 - zeta)^((H/H_max)^p (m_min/m)^q)"
     parameters = (
         Parameter(
             "speed_loss", "-", 0.01, 0.3, "log", 0.0,
@@ -32,6 +32,10 @@ class ImpactSpeedLoss(Mechanism):
         Parameter(
             "loss_growth", "-", -0.5, 1.0, "linear", 0.0,
             "0 for a guide, 1 for air drag, -1/2 for a release that takes a fixed speed", nodes=4,
+        ),
+        Parameter(
+            "loss_by_mass", "-", 0.0, 1.0, "either", 0.0,
+            "0 for one share of all strikers, 1 for a guide's force, the same on each", nodes=2,
         ),
     )  # fmt: skip
     direction = {"permanent_depth_m": -1, "peak_force_N": -1}
@@ -43,6 +47,11 @@ class ImpactSpeedLoss(Mechanism):
         if not any(around.from_height for _, around in situations):
             return "the impact speed was measured, so losses before it do not matter"
         return ""
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Strikers of one mass leave nothing to tell by it."""
+        alike = min(around.mass_share for _, around in situations) == 1.0
+        return self.parameters[:2] if alike else self.parameters
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""
@@ -56,8 +65,9 @@ class ImpactSpeedLoss(Mechanism):
 def _kept(values: Values, around: Surroundings) -> float:
     if not around.from_height:
         return 1.0
-    growth = around.height_share ** values["loss_growth"]
-    return float((1.0 - values["speed_loss"]) ** growth)
+    part = around.height_share ** values["loss_growth"]
+    part *= around.mass_share ** values.get("loss_by_mass", 0.0)
+    return float((1.0 - values["speed_loss"]) ** part)
 
 
 class Tilt(Mechanism):

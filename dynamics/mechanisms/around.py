@@ -27,6 +27,7 @@ def surroundings_of(
     `height_share`, `rises`: as in `Surroundings`.
     """
     target, ball, air = rig.target, rig.strikers[striker], rig.environment
+    strikers = rig.strikers.values()
     weaker = rig.bodies[weaker_table(rig, striker)]
     rough = [q.value for q in (target.Ra_m, ball.Ra_m) if q is not None]
     ambient = value_of(air.temperature_K, Surroundings().ambient)
@@ -47,6 +48,8 @@ def surroundings_of(
         moduli_stated=None not in (target.E_Pa, ball.E_Pa),
         from_height=from_height,
         height_share=height_share,
+        mass_share=min(s.mass_kg.value for s in strikers) / ball.mass_kg.value,
+        tip_share=min(s.tip_radius_m.value for s in strikers) / ball.tip_radius_m.value,
         rises=rises,
         struck=struck_sphere(target),
     )

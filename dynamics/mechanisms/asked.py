@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -27,27 +28,32 @@ class Asked:
     """Mechanisms with their numbers; without any, an impact is the baseline's.
 
     `mechanisms`, `constants`: in the order of the library, and all their parameters; `around`: what
-    they may know of the rig besides the scene; `highest`: square of the speed that the largest
-    height of the file gives [m^2/s^2].
+    they may know of the rig besides the scene; `highest`, `lightest`: square of the speed that the
+    largest height of the file gives [m^2/s^2], and the least mass in it [kg].
     """
 
     mechanisms: tuple[Mechanism, ...] = ()
     constants: Constants = field(default_factory=dict)
     around: Surroundings = field(default_factory=Surroundings)
     highest: float = 0.0
+    lightest: float = math.inf
 
     def __bool__(self) -> bool:
         return bool(self.mechanisms)
 
     def situations(self, plain: Sequence[Scene]) -> list[Situation]:
-        """Return these impacts with what is around each, by its height over the largest."""
+        """Return these impacts with what is around each, by its height and mass over the set's."""
         if not self.around.from_height:
             return [(scene, self.around) for scene in plain]
         fallen = [_head(scene) for scene in plain]
         most = max(self.highest, *fallen)
+        least = min(self.lightest, *(scene.striker.mass for scene in plain))
+        shares = [
+            (one / most, least / s.striker.mass) for s, one in zip(plain, fallen, strict=True)
+        ]
         return [
-            (scene, replace(self.around, height_share=one / most))
-            for scene, one in zip(plain, fallen, strict=True)
+            (scene, replace(self.around, height_share=by_height, mass_share=by_mass))
+            for scene, (by_height, by_mass) in zip(plain, shares, strict=True)
         ]
 
     def idle(self, plain: Sequence[Scene]) -> dict[str, str]:

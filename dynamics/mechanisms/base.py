@@ -43,7 +43,7 @@ class Parameter:
     - `low`, `high`: range within which the source (or physics) puts it; the prior is flat over it.
     - `scale`: whether flat means in the number or in its logarithm; or `half-low`, where the low
       end is a state that occurs: half of the prior is there, the rest flat in the angle whose
-      squared sine the share of the range is.
+      squared sine the share of the range is; or `either`: one of the two ends, as likely.
     - `neutral`: the value at which the mechanism does nothing.
     - `source`: where the range comes from.
     - `nodes`: points of the grid on which the mechanism is simulated.
@@ -55,7 +55,7 @@ class Parameter:
     unit: str
     low: float
     high: float
-    scale: Literal["log", "linear", "half-low"]
+    scale: Literal["log", "linear", "half-low", "either"]
     neutral: float
     source: str
     nodes: int = 9
@@ -68,6 +68,8 @@ class Parameter:
             return np.asarray(self.low * (self.high / self.low) ** p)
         if self.scale == "half-low":
             p = np.sin(0.5 * np.pi * np.maximum(2.0 * p - 1.0, 0.0)) ** 2
+        if self.scale == "either":
+            p = np.round(p)
         return np.asarray(self.low + (self.high - self.low) * p)
 
 
@@ -87,6 +89,8 @@ class Surroundings:
     - `moduli_stated`: whether the set gives Young's modulus of both bodies.
     - `from_height`: whether the speed of this condition was computed from a height of fall.
     - `height_share`: height of fall over the largest of the set.
+    - `mass_share`, `tip_share`: mass and tip radius of the rig's lightest striker and sharpest tip
+      over those of this one.
     - `rises`: how the weaker body's stress rises with the rate of strain, where its flow curve was
       measured at several.
     - `struck`: the second sphere; none where a flat is struck.
@@ -108,6 +112,8 @@ class Surroundings:
     moduli_stated: bool = True
     from_height: bool = False
     height_share: float = 1.0
+    mass_share: float = 1.0
+    tip_share: float = 1.0
     rises: tuple[Rise, ...] = ()
     struck: StruckSphere | None = None
 

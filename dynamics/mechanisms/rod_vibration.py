@@ -75,6 +75,7 @@ class RodFlexuralVibration(_Ringing):
         "free-free Timoshenko beam and axial modes; the contact gives way sideways, k_t = "
         "0.82 2 E' a; re-contact while the tip returns"
     )
+    aslant = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod that leans."""

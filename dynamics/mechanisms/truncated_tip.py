@@ -31,6 +31,10 @@ class TruncatedTip(Mechanism):
             "of the rod's radius: from a narrow land left by turning to no chamfer at all", nodes=5,
             literature=Literature(1.0, "a tip that reaches the rod's side"),
         ),
+        Parameter(
+            "flat_by_radius", "-", 0.0, 1.0, "either", 1.0,
+            "0 for one flat on all tips, 1 for one share of each radius", nodes=2,
+        ),
     )  # fmt: skip
     direction = {
         "contact_time_s": -1,
@@ -48,9 +52,15 @@ class TruncatedTip(Mechanism):
             return "every striker is a ball, which turns: a flat on it would not meet every impact"
         return needs_yielding_law(situations)
 
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Tips of one radius leave nothing to tell by it."""
+        alike = min(around.tip_share for _, around in situations) == 1.0
+        return self.parameters[:2] if alike else self.parameters
+
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the tip."""
-        b = values["flat_radius_over_R"] * scene.striker.tip_radius
+        share = around.tip_share ** (1.0 - values.get("flat_by_radius", 1.0))
+        b = values["flat_radius_over_R"] * share * scene.striker.tip_radius
         if scene.striker.length == 0.0:
             return scene
         flat = math.hypot(b, scene.striker.tip_flat_radius)

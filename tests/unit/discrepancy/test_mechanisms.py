@@ -43,9 +43,13 @@ def ball(mass: float, R: float, speed: float = 1.0) -> Scene:
 
 def test_a_drop_loses_speed_and_keeps_its_restitution() -> None:
     half = Surroundings(from_height=True, height_share=0.5)
-    values = {"speed_loss": 0.19, "loss_growth": 1.0}
+    values = {"speed_loss": 0.19, "loss_growth": 1.0, "loss_by_mass": 0.0}
     changed = named("impact-speed-loss").attach(scene(), values, half)
     assert changed.approach.speed == pytest.approx(0.9)  # sqrt(1 - 0.19) at half the height
+    # a guide's force takes half as much of twice the mass
+    guided = {"speed_loss": 0.19, "loss_growth": 0.0, "loss_by_mass": 1.0}
+    heavy = Surroundings(from_height=True, mass_share=0.5)
+    assert named("impact-speed-loss").attach(scene(), guided, heavy) == changed
     seen = strike(changed)
     assert seen.restitution > strike(scene()).restitution  # slower, so less is lost
     assert named("impact-speed-loss").parameters[0].high == 0.3  # what guides take at the most
@@ -56,6 +60,11 @@ def test_a_ball_has_no_cut_tip() -> None:
     own = ball(0.2, 0.0088)
     assert "ball" in cut.applies([(own, AROUND)])
     assert cut.attach(own, {"flat_radius_over_R": 0.05}, AROUND) == own
+    values = {"flat_radius_over_R": 0.05, "edge_radius_over_radius": math.inf}
+    blunt = Surroundings(tip_share=0.25)  # one radius on all tips: of this share of the sharpest
+    for by_radius, share in ((1.0, 0.05), (0.0, 0.0125)):
+        flat = cut.attach(scene(), values | {"flat_by_radius": by_radius}, blunt).striker
+        assert flat.tip_flat_radius == pytest.approx(share * ROD.tip_radius)
     assert cut.applies([(own, AROUND), (scene(), AROUND)]) == ""
 
 

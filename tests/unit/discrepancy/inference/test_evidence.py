@@ -95,6 +95,15 @@ def test_a_state_that_occurs_has_half_of_the_prior() -> None:
     assert share.value(0.5 + 0.5 * place) == pytest.approx(above, abs=1e-9)
 
 
+def test_one_of_two_has_its_two_places_in_any_window_and_takes_none_from_the_others() -> None:
+    either = Parameter("b", "-", 2.0, 4.0, "either", 2.0, "", nodes=2)
+    size = Parameter("a", "-", 0.0, 1.0, "linear", 0.0, "")
+    grid = Grid((Axis("m", size), Axis("m", either)), ((0.2, 0.4), (0.0, 1.0)))
+    assert either.value([0.2, 0.8]).tolist() == [2.0, 4.0]
+    assert grid.fine[1].tolist() == grid.coarse[1].tolist() == [0.0, 1.0]
+    assert len(grid.fine[0]) == len(Grid((Axis("m", size),)).fine[0])
+
+
 def test_interval_of_a_normal_sample() -> None:
     edges = np.linspace(-6.0, 6.0, 4002)
     weight = np.diff(norm.cdf(edges))
