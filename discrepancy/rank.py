@@ -133,13 +133,14 @@ def _leading_fits(
 ) -> list[Fit]:  # fmt: skip
     """Fit in full what leads by its screening, until no screening comes near the best fit.
 
-    `known`: fits that there are already.
+    A large effect is no small step from the stated numbers: its screening shows but a part of what
+    it explains. `known`: fits that there are already.
     """
     order = sorted(screened, key=lambda s: -s.log_bayes)
     fits: list[Fit] = []
     best = -math.inf
     for found in order:
-        least = max(min(order[0].log_bayes, best) - RULES.near, 0.0)
+        least = max(RULES.hidden * min(order[0].log_bayes, best), 0.0)
         if len(fits) >= RULES.full and found.log_bayes <= least:
             break
         progress(f"fitting {found.mechanism.name}")

@@ -23,6 +23,8 @@ from .odds import Priors, gains, members, tempered
 
 # limit: places of each mechanism in the search for pairs [-]; a pair takes their square
 _PLACES = 250
+# limit: mechanisms that do best by themselves of which every pair is fitted [-]
+_LEADING = 4
 
 
 class _Candidate(NamedTuple):
@@ -46,7 +48,8 @@ def with_pairs(
     """Screen all pairs, one of them a mechanism, and fit those that lead by it.
 
     What leads is fitted, to the problem of the singles; the rest count by their screening. Pairs
-    that decide together where bodies slide are no sum: all are fitted where one of such leads.
+    that decide together where bodies slide are no sum: all are fitted where one of such leads; so
+    are any two of the mechanisms that do best by themselves, whose effects are no small steps.
     """
     simulator = simulator.of(ranking.problem)
     prior = Priors.of(ranking)
@@ -59,12 +62,16 @@ def with_pairs(
     slides = bool(ranking.singles) and ranking.singles[0].mechanisms[0].aslant
     known = [f.log_evidence - ranking.base.log_evidence for f in ranking.singles]
     alone, best = max(known, default=0.0), -math.inf
+    large = [f.name for f, gain in zip(ranking.singles, known, strict=True)
+             if gain > max(RULES.clear, RULES.near_leader * alone)
+             and not is_wrong(f.mechanisms[0])][:_LEADING]  # fmt: skip
     more: list[Fit] = []
     rest: list[Fit] = []
     for c in order:
         summed = weight(c.names, c.gain)
         behind = summed < least or (len(more) + len(rest) >= RULES.paired and summed < best)
-        if behind and not (slides and c.one.mechanism.aslant and c.two.mechanism.aslant):
+        slide = slides and c.one.mechanism.aslant and c.two.mechanism.aslant
+        if behind and not slide and not set(c.names) <= set(large):
             continue
         progress(f"fitting {c.names[0]} with {c.names[1]}")
         both = pair_effect(simulator, c.one, c.two)

@@ -23,6 +23,7 @@ from dentscope.dynamics.mechanisms.base import Parameter
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
 ALIKE = (20.0,) * 8
+LESS = tuple(4.0 * (k - 3.5) for k in range(8))
 BENT = tuple(4.0 * (k - 3.5) ** 2 for k in range(8))
 
 
@@ -183,11 +184,16 @@ def test_a_pair_is_fitted_from_the_unknowns_that_both_leave(toy, library) -> Non
     assert (both.names, abs(both.z[0]) < 0.1 * abs(alone.z[0])) == (("rising", "bent"), True)
 
 
-@pytest.mark.parametrize("aslant", [True, False])
-def test_two_that_decide_together_are_fitted_whatever_their_sum(toy, aslant) -> None:
-    """Beside what rises the other bends what it alone would only lower."""
+@pytest.mark.parametrize(
+    ("shape", "aslant", "fitted"),
+    [((-3.0,) * 8, True, True), ((-3.0,) * 8, False, False), (LESS, False, True)],
+)
+def test_two_that_decide_together_or_lead_are_fitted_whatever_their_sum(
+    toy, shape, aslant, fitted
+) -> None:
+    """Beside what rises the other bends what it alone would only move or tilt."""
     effects = (
-        toy.Effect("rising", RISING, aslant=aslant), toy.Effect("low", (-3.0,) * 8, aslant=aslant)
+        toy.Effect("rising", RISING, aslant=aslant), toy.Effect("low", shape, aslant=aslant)
     )  # fmt: skip
 
     class Together(toy.Simulator):
@@ -198,10 +204,10 @@ def test_two_that_decide_together_are_fitted_whatever_their_sum(toy, aslant) -> 
                 row += math.prod(both) * np.array(BENT) if len(both) == 2 else 0.0
             return found
 
-    data = 0.5 * np.array(RISING) - 2.4 + 0.4 * np.array(BENT)
+    data = 0.5 * np.array(RISING) + 0.8 * np.array(shape) + 0.4 * np.array(BENT)
     simulator = Together(toy.problem(data, derivative=np.zeros((8, 0))))
     pairs = with_pairs(simulator, rank(simulator, mechanisms=effects)).pairs
-    assert [pair.name for pair in pairs] == ["rising+low"] * aslant
+    assert [pair.name for pair in pairs] == ["rising+low"] * fitted
 
 
 def test_a_pair_of_many_parameters_costs_the_sum_of_its_nodes_not_their_product() -> None:

@@ -239,10 +239,12 @@ def paired(toy, data, effects):
     return [a.removeprefix("fitting ") for a in asked], found.unfitted
 
 
-def test_the_six_best_pairs_are_fitted_and_the_others_screened(toy) -> None:
-    effects, shapes = library_of(toy, *[40.0] * 5)
+@pytest.mark.parametrize(("sizes", "count"), [((40.0,) * 5, 7), ((40.0, *(30.0,) * 4), 6)])
+def test_the_six_best_pairs_and_those_of_four_alike_are_fitted(toy, sizes, count) -> None:
+    """Of five alike the first four are in six pairs, of which one is not among the six best."""
+    effects, shapes = library_of(toy, *sizes)
     fitted, screened = paired(toy, 0.5 * np.sum(shapes, axis=0), effects)
-    assert (len(fitted), len(screened)) == (6, 4)
+    assert (len(fitted), len(screened)) == (count, 10 - count)
 
 
 def screened_pairs(toy, data, effects, singles):
