@@ -114,7 +114,7 @@ def test_derivatives_are_differences_over_three_tenths_of_a_deviation(toy) -> No
     assert max(p.faster for p in seen) == 0.01
 
 
-def test_three_mechanisms_are_fitted_in_full_and_those_within_5_nats(toy) -> None:
+def test_three_mechanisms_are_fitted_in_full_and_those_from_a_fifth_of_the_leader(toy) -> None:
     """Of a shape s and data s/2 the gain is |s|^2/8, less the prior's width."""
     shapes = [tuple(40.0 * (k == j) for k in range(8)) for j in range(6)]
 
@@ -124,9 +124,9 @@ def test_three_mechanisms_are_fitted_in_full_and_those_within_5_nats(toy) -> Non
         return len(rank(toy.Simulator(toy.problem(data)), mechanisms=library).singles)
 
     assert fitted([0.9, 0.1, 0.1, 0.1, 0.1, 0.1]) == 3
-    # 800 s^2 nats: sizes of 0.5 and 0.497 are 2.4 nats apart, those of 0.5 and 0.49 7.9
-    assert fitted([0.5, 0.497, 0.497, 0.497, 0.497, 0.497]) == 6
-    assert fitted([0.5, 0.49, 0.49, 0.49, 0.49, 0.49]) == 3
+    # 800 s^2 nats: sizes of 0.5, 0.24 and 0.2 gain some 200, 46 and 32
+    assert fitted([0.5, 0.24, 0.24, 0.24, 0.24, 0.24]) == 6
+    assert fitted([0.5, 0.2, 0.2, 0.2, 0.2, 0.2]) == 3
 
 
 def test_a_drift_needs_eight_repeats_and_one_in_a_thousand() -> None:
