@@ -364,7 +364,7 @@ class DiagnosisRules:
     )  # fmt: skip
     hidden: float = rule(
         0.2, "part of the leader's gain from whose screening on they are, too [-]",
-        "of 121 sets of two makes five leaders were not even fitted; costs a sixth of the time",
+        "of 163 sets of two makes four truths were not even fitted; costs a tenth of the time",
     )  # fmt: skip
     invisible: float = rule(
         1.0, "largest effect, in standard deviations, of what cannot be seen [-]",
