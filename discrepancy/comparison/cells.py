@@ -124,10 +124,8 @@ class _Compared(NamedTuple):
 
 
 def compared(name: str, values: Array) -> Array:
-    """Return values as they are compared: their logarithm, where the observable asks for it.
-
-    Nothing is read below a nanometre or nanosecond: a cliff to less bends what lies beside it.
-    """
+    """Return values as they are compared: their logarithm, where the observable asks for it."""
+    # nothing is read below a nanometre or nanosecond, and a cliff bends what lies beside it
     return np.log(np.maximum(values, 1e-9)) if OBSERVABLES[name].log else values
 
 

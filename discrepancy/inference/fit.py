@@ -282,10 +282,8 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
 
 
 def _spread(fitted: Fit) -> Array:
-    """Posterior standard deviation of each parameter, as a share of its prior's range.
-
-    That of one of two is infinite: no window leaves one of them out.
-    """
+    """Posterior standard deviation of each parameter, as a share of its prior's range."""
     places, weight = fitted.grid.places(), fitted.weight
     away = places - weight @ places
+    # no window leaves one of two out
     return np.where(fitted.grid.either, np.inf, np.sqrt(weight @ away**2))

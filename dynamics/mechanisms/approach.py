@@ -36,6 +36,7 @@ class ImpactSpeedLoss(Mechanism):
         Parameter(
             "loss_by_mass", "-", 0.0, 1.0, "either", 0.0,
             "0 for one share of all strikers, 1 for a guide's force, the same on each", nodes=2,
+            power_of="mass_share",
         ),
     )  # fmt: skip
     direction = {"permanent_depth_m": -1, "peak_force_N": -1}
@@ -47,11 +48,6 @@ class ImpactSpeedLoss(Mechanism):
         if not any(around.from_height for _, around in situations):
             return "the impact speed was measured, so losses before it do not matter"
         return ""
-
-    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Strikers of one mass leave nothing to tell by it."""
-        alike = min(around.mass_share for _, around in situations) == 1.0
-        return self.parameters[:2] if alike else self.parameters
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""

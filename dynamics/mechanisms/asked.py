@@ -48,12 +48,9 @@ class Asked:
         fallen = [_head(scene) for scene in plain]
         most = max(self.highest, *fallen)
         least = min(self.lightest, *(scene.striker.mass for scene in plain))
-        shares = [
-            (one / most, least / s.striker.mass) for s, one in zip(plain, fallen, strict=True)
-        ]
         return [
-            (scene, replace(self.around, height_share=by_height, mass_share=by_mass))
-            for scene, (by_height, by_mass) in zip(plain, shares, strict=True)
+            (s, replace(self.around, height_share=one / most, mass_share=least / s.striker.mass))
+            for s, one in zip(plain, fallen, strict=True)
         ]
 
     def idle(self, plain: Sequence[Scene]) -> dict[str, str]:

@@ -47,6 +47,8 @@ class Parameter:
     - `neutral`: the value at which the mechanism does nothing.
     - `source`: where the range comes from.
     - `nodes`: points of the grid on which the mechanism is simulated.
+    - `power_of`: share in `Surroundings` that it is a power of; where that is 1 for all, nothing
+      tells it.
     - `literature`: a published value for mild steel and common rigs, at which the mechanism can be
       tried without fitting; none where there is no such value.
     """
@@ -60,6 +62,7 @@ class Parameter:
     source: str
     nodes: int = 9
     literature: Literature | None = None
+    power_of: str = ""
 
     def value(self, place: float | Array) -> Array:
         """Return the value at a place in (0, 1) of the prior."""
@@ -215,8 +218,11 @@ class Mechanism(ABC):
         return neutral | dict(self.usual(around, sized=sized)) | dict(self.stated(around))
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Return the parameters with the ranges that this rig allows."""
-        return self.parameters
+        """Return the parameters that this rig can tell, with the ranges that it allows."""
+        return tuple(
+            p for p in self.parameters
+            if not p.power_of or any(getattr(a, p.power_of) != 1.0 for _, a in situations)
+        )  # fmt: skip
 
     @abstractmethod
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:

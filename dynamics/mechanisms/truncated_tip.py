@@ -34,6 +34,7 @@ class TruncatedTip(Mechanism):
         Parameter(
             "flat_by_radius", "-", 0.0, 1.0, "either", 1.0,
             "0 for one flat on all tips, 1 for one share of each radius", nodes=2,
+            power_of="tip_share",
         ),
     )  # fmt: skip
     direction = {
@@ -51,11 +52,6 @@ class TruncatedTip(Mechanism):
         if all(scene.striker.length == 0.0 for scene, _ in situations):
             return "every striker is a ball, which turns: a flat on it would not meet every impact"
         return needs_yielding_law(situations)
-
-    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Tips of one radius leave nothing to tell by it."""
-        alike = min(around.tip_share for _, around in situations) == 1.0
-        return self.parameters[:2] if alike else self.parameters
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the tip."""

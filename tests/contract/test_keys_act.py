@@ -122,14 +122,8 @@ HOT = BALL.replace("angle_deg", "temperature_K = 600.0\nangle_deg").replace(
 )
 EDGED = ROD.replace("radius_m = 0.005\nlength", "radius_m = 0.0006\nlength").replace(
     "[impact]",
-    """[strikers.other]
-shape = "sphere"
-radius_m = 0.001
-density_kg_m3 = 7800
-E_Pa = 2e11
-nu = 0.3
-[impact]
-striker = 'ball'""",
+    '[strikers.other]\nshape = "sphere"\nradius_m = 0.001\nmass_kg = 1e-4\nE_Pa = 2e11\n'
+    'nu = 0.3\n[impact]\nstriker = "ball"\n',
 )
 DROPPED = BALL.replace("impact_speed_m_s = 1.0", "drop_height_m = 0.3")
 FALLS = DROPPED + "[sweep]\ndrop_height_m = [0.1, 0.3]\nmass_kg = [0.001, 0.002]\n"
