@@ -48,10 +48,14 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if thickness is None:
         return
     h = thickness.value
-    dent = found.residual_flat_m
-    if found.peak_depth_m >= h:
+    dent, into, pair = found.residual_flat_m, found.peak_depth_m, scene.pair
+    if math.isnan(pair.Sy_ratio):
+        into *= 1.0 - pair.elastic_share
+    elif pair.Sy_ratio <= 1.0:
+        into = dent
+    if into >= h:
         yield (
-            f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the flat is thick, "
+            f"the approach, {into * 1e3:.3g} mm of it into the flat, is more than that is thick, "
             f"{h * 1e3:.3g} mm: it would be pierced, and no number here holds"
         )
     a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))

@@ -285,6 +285,11 @@ OF_TUNGSTEN = {
         {"target.density_kg_m3": {"value": 8500.0, "std": 85.0}},
         "of target.density_kg_m3, 0.01 of it, changes nothing here",
     ),
+    "hail, which takes the whole approach": (
+        {"strikers.ball": {"E_Pa": 9e9, "Sy_Pa": 1e7, "density_kg_m3": 900},
+         "target.thickness_m": 5e-4, "impact.drop_height_m": 20.0},
+        "no: pierced",
+    ),
     "a deviation of the table": (
         {"target": {"density_kg_m3": None, "material": "brass-cartridge-annealed"}},
         "no: changes nothing here",
@@ -442,7 +447,7 @@ def test_far_beyond_every_comparison_nothing_has_an_error():
     assert not any("±" in cell for row in found.table() for cell in row)
     assert all(row["restitution_std"] == "" for row in found.written())
     assert "fitted, jackson-green: so deep no law was compared with finite elements" in lines
-    assert "the approach, 59.5 mm, is more than the flat is thick, 15 mm" in lines
+    assert "the approach, 59.5 mm of it into the flat, is more than that is thick, 15 mm" in lines
 
 
 def test_a_rod_that_stands_has_no_spin_and_one_that_leans_a_band_of_its_rebound():
