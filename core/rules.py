@@ -54,6 +54,7 @@ class CoreRules:
         "a hundredth of what a test shows",
     )  # fmt: skip
     flow_rows: int = rule(200, "its rows [-]", "28 a decade")
+    deepest: float = rule(0.5, "largest approach that is solved or kept in a table [R]")
 
 
 RULES = CoreRules()

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.errors import Ending, Outcome
+from ..core.rules import RULES as CORE
 from .assemble import advance
 from .discretise import discretise
 from .elements import State
@@ -119,7 +120,7 @@ class Loading:
 
     def _deep_enough(self, point: PathPoint) -> bool:
         radius = point.record.reading.radius
-        return radius >= self.problem.radius_at_least or point.delta >= RULES.deepest
+        return radius >= self.problem.radius_at_least or point.delta >= CORE.deepest
 
     def _limit(self, point: PathPoint) -> float:
         elastic = point.delta < RULES.elastic_until * self._onset

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.material import Pair
-from .rules import RULES
+from ..core.rules import RULES
 
 NUMERICS_VERSION = 5
 """Raised only when results change; stored with every case."""

@@ -88,7 +88,6 @@ class FemRules:
         "the radius grows by the power 0.5, but values between rings cost what they bring: fewest "
         "iterations",
     )
-    deepest: float = rule(0.5, "largest approach that can be asked for [R]")
     gap_edges: int = rule(5, "open surface elements that the fit of the gap looks at [-]")
     edge_candidates: int = rule(161, "places of the contact edge that the fit of the gap tries [-]")
     steps_beyond: int = rule(4, "steps past the last depth [-]", "the fit there is then two-sided")

@@ -12,11 +12,11 @@ from .. import fem
 from ..core.arrays import Array
 from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
+from ..core.rules import RULES as CORE
 from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.rules import RULES as DIAGNOSIS
 from ..dynamics import Scene
 from ..dynamics.mechanisms.base import Constants, Mechanism
-from ..fem.rules import RULES as FEM
 from ..models.anchored import AnchoredLaw
 from .rules import RULES
 
@@ -80,7 +80,7 @@ def _press(
 ) -> fem.ContactProblem:
     known = scene.law.metal(scene.pair) if isinstance(scene.law, AnchoredLaw) else scene.pair
     metal = _flowing(known, scene.pair, constants)
-    last = min(RULES.press_deeper * max(turns), FEM.deepest)
+    last = min(RULES.press_deeper * max(turns), CORE.deepest)
     first = min(0.3 * metal.first_yield, 1e-2 * last)
     return fem.ContactProblem(
         pair=metal, depths=fem.geometric_depths(first, last, DIAGNOSIS.solve_depths),

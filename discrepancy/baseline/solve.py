@@ -13,6 +13,7 @@ import numpy as np
 from ...core.compiled import cache_folder
 from ...core.errors import InputError
 from ...core.material import Pair
+from ...core.rules import RULES as CORE
 from ...models.table import PairTable
 from ...models.table_file import read_table, write_table
 from ..rules import RULES
@@ -62,11 +63,10 @@ def solved_table(
     """
     # loaded when there is something to solve: most diagnoses need none of it
     from ... import fem
-    from ...fem.rules import RULES as FEM
     from ...fitting.case_table import pair_table
 
     onset = pair.first_yield
-    last = min(RULES.solve_deeper * high, FEM.deepest)
+    last = min(RULES.solve_deeper * high, CORE.deepest)
     if last < 2.0 * onset:
         raise InputError(f"Delta/R to {last:.2g}", key="depth",
                          allowed=f"well beyond first yield at {onset:.2g}")  # fmt: skip

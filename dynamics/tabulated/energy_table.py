@@ -16,7 +16,7 @@ from numba import float64, njit, types
 
 from ...core.arrays import Array
 from ...core.material import Pair
-from ...fem.rules import RULES as FEM
+from ...core.rules import RULES as CORE
 from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH, LOADING, SPLIT, VECTOR
 from ..rules import RULES
@@ -29,7 +29,7 @@ SHALLOWEST = 1e-8
 ERROR = RULES.table_error
 """Error of the table; restitution and times come out within ten times this of the integral."""
 
-DEEPEST = FEM.deepest
+DEEPEST = CORE.deepest
 """Peak depths over R that the route answers for."""
 
 # Columns of the table: ln(d_m), ln(F_m), returned share of the work, residual depths over d_m, then
