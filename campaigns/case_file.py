@@ -14,10 +14,11 @@ import numpy.typing as npt
 from ..core.arrays import Array
 from ..core.errors import Ending
 from ..core.provenance import environment
-from ..fem import Curve, Solution
+from ..fem import Curve, Solution, Unloading
 from ..fem.results.fields import write_vtu
 from .case import Case
 from .contents import new_image
+from .parts import filled
 from .quality import quality_of
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -81,7 +82,7 @@ def _put_solution(file: h5py.Group, solution: Solution) -> None:
     counters = solution.counters
     for name in counters.__dataclass_fields__:
         file.attrs[f"counter_{name}"] = float(getattr(counters, name))
-    _put_curve(file.create_group("loading"), solution.loading)
+    _put_arrays(file.create_group("loading"), solution.loading, CURVE)
     for number, unloading in enumerate(solution.unloadings, start=1):
         part = file.create_group(f"unload-{number}")
         part.attrs["depth"] = unloading.depth
@@ -89,9 +90,8 @@ def _put_solution(file: h5py.Group, solution: Solution) -> None:
         part.attrs["residual_flat_m"] = unloading.residual_flat
         part.attrs["steps"] = unloading.steps
         part.attrs["outcome"] = unloading.outcome.ending.value
-        _put_curve(part, unloading.curve)
-        for name, about in UNLOADING_PROFILES.items():
-            _put_array(part, name, getattr(unloading, name), about)
+        _put_arrays(part, unloading.curve, CURVE)
+        _put_arrays(part, unloading, UNLOADING_PROFILES)
     if solution.profiles:
         _put_profiles(file.create_group("profiles"), solution)
 
@@ -109,15 +109,12 @@ def _put_profiles(group: h5py.Group, solution: Solution) -> None:
             c[: int(np.searchsorted(r, reach)) + 1] for c, r in zip(columns, radii, strict=True)
         ]
         # the mesh follows the contact, so that the profiles differ in their number of nodes
-        values = np.full((len(kept), max(map(len, kept))), np.nan, dtype=np.float32)
-        for row, column in zip(values, kept, strict=True):
-            row[: len(column)] = column
-        _put_array(group, name, values, about)
+        _put_array(group, name, filled(kept).astype(np.float32), about)
 
 
-def _put_curve(group: h5py.Group, curve: Curve) -> None:
-    for name, about in CURVE.items():
-        _put_array(group, name, getattr(curve, name), about)
+def _put_arrays(group: h5py.Group, part: Curve | Unloading, schema: dict[str, Dataset]) -> None:
+    for name, about in schema.items():
+        _put_array(group, name, getattr(part, name), about)
 
 
 def _put_array(

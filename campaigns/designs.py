@@ -42,10 +42,6 @@ def _thesis() -> tuple[Case, ...]:
     return (*thesis_first(), *thesis_second(), *thesis_third())
 
 
-def _full() -> tuple[Case, ...]:
-    return (*_thesis(), *space(), *validation())
-
-
 DESIGNS: dict[str, Design] = {
     design.name: design
     for design in (
@@ -80,7 +76,9 @@ DESIGNS: dict[str, Design] = {
             "24 pairs drawn from the checksum of the coefficients in use, which no fit may use",
             challenge,
         ),
-        Design("full", "thesis, space and validation", _full),
+        Design(
+            "full", "thesis, space and validation", lambda: (*_thesis(), *space(), *validation())
+        ),
         Design(
             "robustness",
             "300 Sobol points over the solver's whole range, medium resolution",

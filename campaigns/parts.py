@@ -310,13 +310,9 @@ def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
     scalars = {name: read_array(table[name]) for name in _UNLOADING}
     out: list[list[UnloadingRecord]] = [[] for _ in range(n)]
     for k in range(count):
-        out[owner[k]].append(
-            UnloadingRecord(
-                curve=curves[k],
-                profiles={**craters[k], **tips[k]},
-                **{name: float(values[k]) for name, values in scalars.items()},
-            )
-        )
+        numbers = {name: float(values[k]) for name, values in scalars.items()}
+        shapes = craters[k] | tips[k]
+        out[owner[k]].append(UnloadingRecord(curve=curves[k], profiles=shapes, **numbers))
     return out
 
 
@@ -329,7 +325,7 @@ def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Array]]:
         rows = np.flatnonzero(owner == k)
         states = [{**spheres[row], **flats[row]} for row in rows]
         found = {
-            name: _filled([state[name] for state in states])
+            name: filled([state[name] for state in states])
             for name in (*_ON_SPHERE, *_ON_FLAT)
             if states
         }
@@ -337,8 +333,8 @@ def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Array]]:
     return out
 
 
-def _filled(rows: Sequence[Array]) -> Array:
-    """Rows of uneven length as one array, filled up with NaN as in a case's file."""
+def filled(rows: Sequence[Array]) -> Array:
+    """Return rows of uneven length as one array, filled up with NaN."""
     out = np.full((len(rows), max(map(len, rows))), np.nan)
     for row, values in zip(out, rows, strict=True):
         row[: len(values)] = values

@@ -48,8 +48,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
         ),
         strict=True,
     ):
-        axis.set_xlabel(x)
-        axis.set_ylabel(y)
+        axis.set(xlabel=x, ylabel=y)
         axis.grid(alpha=0.3)
     bar = made.colorbar(shades, ax=axes, shrink=0.6, ticks=[0.1, 1.0, 10.0])
     bar.ax.set_yticklabels(["0.1\nsphere weaker:\nit flattens", "1", "10\nflat weaker:\nit dents"])

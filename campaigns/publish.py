@@ -16,14 +16,13 @@ import h5py
 import numpy as np
 
 from .. import fem
-from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import finish, finish_pending, locked, write_files
 from ..core.provenance import file_digest
 from .designs import Design, distinct_cases
 from .manifest import MANIFEST, manifest
 from .parts import CHECKSUMS, checksums, opened_part, part_of, read_part, texts_of
-from .records import CaseRecord
+from .records import CaseRecord, scaled
 from .run import status_of
 from .store import Store
 
@@ -98,19 +97,13 @@ def publish(
 
 
 def read_published(folder: Path) -> list[CaseRecord]:
-    """Read all completed cases of a published data set.
-
-    Refused where a part is missing, or its checksum is not the published one.
-    """
+    """Read a data set's completed cases; a part missing, or of another checksum, is refused."""
     records = (record for path in _checked_parts(folder) for record in read_part(path))
     return [record for record in records if record.status == "done"]
 
 
 def published_designs(folder: Path) -> list[Published]:
-    """Say which designs a data set holds, without reading its curves.
-
-    Refused as `read_published`.
-    """
+    """Say which designs a data set holds, its curves unread; refused as `read_published`."""
     found: dict[str, list[tuple[int, Counter[str]]]] = {}
     for file in _opened(folder):
         counts = Counter(texts_of(file, "status"))
@@ -183,24 +176,16 @@ def _groups(record: CaseRecord) -> str:
 
 
 def _differences(a: CaseRecord, b: CaseRecord) -> tuple[float, float, float]:
-    mine, theirs = _scaled(a), _scaled(b)
-    x, y = np.log(mine[0]), np.log(theirs[0])
+    (mine, *ours), (theirs, *others) = scaled(a), scaled(b)
+    x, y = np.log(mine), np.log(theirs)
     within = (x >= y[0] - 1e-6) & (x <= y[-1] + 1e-6)
     force, radius, share = (
         float(np.abs(own[within] / np.exp(np.interp(x[within], y, np.log(other))) - 1.0).max())
         if within.any()
         else 0.0
-        for own, other in zip(mine[1:], theirs[1:], strict=True)
+        for own, other in zip(ours, others, strict=True)
     )
     return force, radius, share
-
-
-def _scaled(record: CaseRecord) -> tuple[Array, Array, Array, Array]:
-    """Delta/R, F/(E' R^2), a/R and delta_s*."""
-    pair, c = record.case.pair, record.curve
-    share = c["sphere"] / (c["sphere"] + c["flat"])
-    force = c["force"] / (pair.E_reduced * pair.R**2)
-    return c["delta"] / pair.R, force, c["radius"] / pair.R, share
 
 
 def _made_parts(records: list[CaseRecord], design: str, most_bytes: int) -> list[bytes]:

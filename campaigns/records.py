@@ -64,6 +64,14 @@ class CaseRecord:
         return quality_of(self.curve or {"delta": np.zeros(0)}, self.case.pair.R)
 
 
+def scaled(record: CaseRecord) -> tuple[Array, Array, Array, Array]:
+    """Return Delta/R, F/(E' R^2), a/R and delta_s* of a loading curve, shape (n,)."""
+    pair, c = record.case.pair, record.curve
+    share = c["sphere"] / (c["sphere"] + c["flat"])
+    force = c["force"] / (pair.E_reduced * pair.R**2)
+    return c["delta"] / pair.R, force, c["radius"] / pair.R, share
+
+
 @dataclass(frozen=True)
 class Summary:
     """One stored case without its arrays; `quality` is none where the solver gave nothing."""

@@ -66,21 +66,19 @@ class Store:
         if self.folder.is_file():
             _refuse_file(self.folder)
         done, failed = (file_of(self.folder, case.id, status) for status in _ENDS)
-        fields: list[str] = []
         with _all_kept():
-            if solution is not None:
-                kept = write_fields(solution, self.folder / FIELDS, name=case.id[:16])
-                fields = [path.name for path in kept]
+            folder, name = self.folder / FIELDS, case.id[:16]
+            kept = write_fields(solution, folder, name=name) if solution else []
             image = case_image(
-                case, solution, message=message, computed_by=computed_by, fields=fields
-            )
-            if solution is None or not solution.outcome.completed:
-                if not done.exists():
-                    write_file(failed, image)
-                return
-            write_file(done, image)
-            with suppress(OSError):  # where both are there the completed one counts
-                DISK.remove(failed)
+                case, solution, message=message, computed_by=computed_by,
+                fields=[path.name for path in kept],
+            )  # fmt: skip
+            if solution is not None and solution.outcome.completed:
+                write_file(done, image)
+                with suppress(OSError):  # where both are there the completed one counts
+                    DISK.remove(failed)
+            elif not done.exists():
+                write_file(failed, image)
 
     def files(self) -> list[Path]:
         """Return the file of every case, in the order of their ids."""
@@ -88,7 +86,7 @@ class Store:
 
     def summaries(self) -> list[Summary]:
         """Read what is known of every case but its arrays, in the order of their ids."""
-        return self._each(read_summary)
+        return [self._read(key, read_summary) for key in self._files()]
 
     def read(self, case_id: str) -> CaseRecord:
         """Read one case, named by its id or the beginning of it."""
@@ -104,7 +102,7 @@ class Store:
 
     def read_all(self) -> list[CaseRecord]:
         """Read every case, in the order of their ids."""
-        return self._each(read_case)
+        return [self._read(key, read_case) for key in self._files()]
 
     def repair(self) -> tuple[int, list[str]]:
         """Set aside the cases that are damaged, as `NAME.damaged` beside where they were.
@@ -139,9 +137,6 @@ class Store:
             if key not in found or _status(path) == "done":
                 found[key] = path
         return dict(sorted(found.items()))
-
-    def _each(self, read: Callable[[h5py.Group, Path], Read]) -> list[Read]:
-        return [self._read(key, read) for key in self._files()]
 
     def _read(self, key: str, read: Callable[[h5py.Group, Path], Read]) -> Read:
         done, failed = (file_of(self.folder, key, status) for status in _ENDS)

@@ -59,13 +59,10 @@ def _add_with_imports(path: Path, files: set[Path]) -> None:
     files.add(path)
     for dots, name, what in _RELATIVE.findall(path.read_text(encoding="utf-8")):
         base = path.parents[len(dots) - 1].joinpath(*filter(None, name.split(".")))
-        if (module := base.with_suffix(".py")).is_file():
-            _add_with_imports(module, files)
-            continue
-        # of a package: its modules by name, or what it re-exports
+        # a module; of a package its modules by name, or what it re-exports
         for word in what.partition("#")[0].strip("()").split(","):
             module = base / f"{word.split(' as ')[0].strip()}.py"
-            for file in (module, base / "__init__.py"):
+            for file in (base.with_suffix(".py"), module, base / "__init__.py"):
                 if file.is_file():
                     _add_with_imports(file, files)
                     break

@@ -67,7 +67,7 @@ class InputError(ValueError):
         self.key = key
         self.allowed = allowed
         shown = (source, shortened(key, _KEY_SHOWN), shortened(message, _MESSAGE_SHOWN))
-        head = ": ".join(part for part in shown if part)
+        head = ": ".join(filter(None, shown))
         super().__init__(printable(f"{head} (allowed: {allowed})" if allowed else head))
 
     def at(self, source: str, key: str) -> InputError:
@@ -146,9 +146,7 @@ class Outcome:
         return self.ending is Ending.COMPLETED
 
     def __str__(self) -> str:
-        return " ".join(
-            part for part in (f"{self.ending.value}:", self.message, self.advice) if part
-        )
+        return " ".join(filter(None, (f"{self.ending.value}:", self.message, self.advice)))
 
 
 COMPLETED = Outcome(Ending.COMPLETED)

@@ -46,22 +46,12 @@ class FlowCurve:
             raise InputError(
                 f"begins at {strain[0]:g}", key="flow_curve", allowed="a first plastic strain of 0"
             )
-        wrong = np.flatnonzero(~(np.diff(strain) > 0.0))
-        if len(wrong):
-            row = int(wrong[0]) + 2
-            raise InputError(
-                f"{strain[row - 1]:g} in row {row}",
-                key="flow_curve",
-                allowed=f"plastic strains that increase (above {strain[row - 2]:g})",
-            )
-        wrong = np.flatnonzero(~((stress > 0.0) & np.isfinite(stress)))
-        if len(wrong):
-            row = int(wrong[0]) + 1
-            raise InputError(
-                f"{stress[row - 1]:g} in row {row}",
-                key="flow_curve",
-                allowed="stresses above 0 [Pa]",
-            )
+        for k in np.flatnonzero(~(np.diff(strain) > 0.0)):
+            allowed = f"plastic strains that increase (above {strain[k]:g})"
+            raise InputError(f"{strain[k + 1]:g} in row {k + 2}", key="flow_curve", allowed=allowed)
+        for k in np.flatnonzero(~((stress > 0.0) & np.isfinite(stress))):
+            allowed = "stresses above 0 [Pa]"
+            raise InputError(f"{stress[k]:g} in row {k + 1}", key="flow_curve", allowed=allowed)
 
     def __repr__(self) -> str:
         last = f"{self.stress[-1]:.4g} Pa at {self.strain[-1]:g}"

@@ -74,10 +74,7 @@ def folder_for_output(folder: Path) -> Path:
 
 
 def write_file(path: Path, content: bytes | str) -> Path:
-    """Write a file whole or not at all; its folder is made if needed.
-
-    Where it cannot be written, what was there is unchanged.
-    """
+    """Write a file whole, or leave what was there as it was; its folder is made if needed."""
     # a name that is no text in UTF-8 is no reason to fail
     data = content.encode(errors="replace") if isinstance(content, str) else content
     try:

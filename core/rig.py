@@ -96,28 +96,24 @@ def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
     return AfterValidator(Within(accept, allowed))
 
 
-def _between(low: float, high: float, **units: float) -> AfterValidator:
-    return AfterValidator(span(low, high, **units))
-
-
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
 Modulus = Annotated[Quantity, AfterValidator(MODULI)]
 Strength = Annotated[Quantity, AfterValidator(STRENGTHS)]
 Density = Annotated[Quantity, AfterValidator(DENSITIES)]
-Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
+Length = Annotated[Quantity, AfterValidator(span(1e-9, 10.0, mm=1e-3, um=1e-6))]
 Radius = Annotated[Quantity, AfterValidator(RADII)]
 SeatRadius = Annotated[
     Quantity, _within(lambda x: 1e-9 <= abs(x) <= 1e3, "a radius up to 1000 m, or below 0 a seat's")
 ]
-Roughness = Annotated[Quantity, _between(0.0, 1e-3, um=1e-6, nm=1e-9)]
-Mass = Annotated[Quantity, _between(1e-18, 1e6)]
+Roughness = Annotated[Quantity, AfterValidator(span(0.0, 1e-3, um=1e-6, nm=1e-9))]
+Mass = Annotated[Quantity, AfterValidator(span(1e-18, 1e6))]
 Speed = Annotated[Quantity, AfterValidator(SPEEDS)]
-Height = Annotated[Quantity, _between(1e-9, 200.0, mm=1e-3)]
-Temperature = Annotated[Quantity, _between(0.1, 1e4)]
-HeatCapacity = Annotated[Quantity, _between(10.0, 3e4, **{"J/(g K)": 1e3})]
-Gravity = Annotated[Quantity, _between(0.0, 1e3)]
-Friction = Annotated[Quantity, _between(0.0, 20.0)]
+Height = Annotated[Quantity, AfterValidator(span(1e-9, 200.0, mm=1e-3))]
+Temperature = Annotated[Quantity, AfterValidator(span(0.1, 1e4))]
+HeatCapacity = Annotated[Quantity, AfterValidator(span(10.0, 3e4, **{"J/(g K)": 1e3}))]
+Gravity = Annotated[Quantity, AfterValidator(span(0.0, 1e3))]
+Friction = Annotated[Quantity, AfterValidator(span(0.0, 20.0))]
 Poisson = Annotated[Quantity, _within(lambda x: 0.0 <= x < 0.5, "0 <= nu < 0.5")]
 
 
@@ -253,10 +249,7 @@ class BodyTable(MaterialTable):
 
     @property
     def tabor(self) -> tuple[float, float, str] | None:
-        """Hardness over strength, its standard deviations off Tabor's and both in words.
-
-        None unless both are stated.
-        """
+        """Hardness over strength, std off Tabor's, both in words; None unless both are stated."""
         if self.hardness_Pa is None or self.Sy_Pa is None:
             return None
         ratio = self.hardness_Pa.value / self.Sy_Pa.value
@@ -505,13 +498,11 @@ class Rig(InputTable):
             return given
         if _EDGE in given:
             raise ValueError(f"{_EDGE} stands in [noise]")
-        if not isinstance(given.get("noise"), dict):
+        noise = given.get("noise")
+        if not isinstance(noise, dict) or _EDGE not in noise:
             return given
-        noise = dict(given["noise"])
-        if _EDGE not in noise:
-            return given
-        return {**given, "noise": {k: v for k, v in noise.items() if k != _EDGE},
-                _EDGE: noise[_EDGE]}  # fmt: skip
+        rest = {k: v for k, v in noise.items() if k != _EDGE}
+        return {**given, "noise": rest, _EDGE: noise[_EDGE]}
 
     @property
     def bodies(self) -> dict[str, BodyTable]:

@@ -3,12 +3,6 @@
 from __future__ import annotations
 
 from .fit import fit_tables
-from .prediction import Errors
 from .table import read_sources, tables_of
 
-__all__ = [
-    "Errors",
-    "fit_tables",
-    "read_sources",
-    "tables_of",
-]
+__all__ = ["fit_tables", "read_sources", "tables_of"]

@@ -90,17 +90,16 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
 
 def _scaled(weights: Array, features: Array, size: Array) -> Array:
     """Return the weights with the shares above; what one of them lacks the other has too much."""
+    constant = np.eye(len(weights))[0]
 
     def beyond(scale: float) -> float:
-        spread = deviation(
-            features, weights + scale * np.eye(len(weights))[0], least=RULES.element_noise
-        )
+        spread = deviation(features, weights + scale * constant, least=RULES.element_noise)
         one, two = (float(np.mean(size <= k * spread)) for k in (1.0, 2.0))
         return (one - SIGMAS[0]) + (two - SIGMAS[1])
 
     if beyond(-3.0) >= 0.0:
         return weights
-    return np.asarray(weights + brentq(beyond, -3.0, 3.0) * np.eye(len(weights))[0])
+    return np.asarray(weights + brentq(beyond, -3.0, 3.0) * constant)
 
 
 def within(calibration: Calibration, found: dict[str, Misses]) -> dict[str, tuple[float, float]]:

@@ -29,10 +29,7 @@ from .table import Sources, Table
 
 
 def coefficients_content(laws: FittedLaws, table: Table, campaigns: Sources) -> dict[str, Any]:
-    """Return the content of the coefficients file: laws.
-
-    And the rows and campaigns they are from.
-    """
+    """Return the content of the file: the laws, the rows and campaigns that they are from."""
     fit, correction = laws.fit, laws.correction
     judged = {"compact": laws.compact, "fitted": laws.fitted}
     return {

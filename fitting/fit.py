@@ -17,7 +17,6 @@ from ..core.arrays import Array, Integers
 from ..core.errors import COMPLETED, Ending, Outcome
 from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
-from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START
 from .prediction import Errors, errors_of, misfit, predict, slopes_of
 from .ripple import ripple_of
@@ -43,11 +42,6 @@ class FormFit:
     covariance: Array
     errors: Errors
     outcome: Outcome
-
-    @property
-    def law(self) -> ClosedForm:
-        """The law with these coefficients."""
-        return closed_form_law(dict(zip(COEFFICIENTS, self.values.tolist(), strict=True)))
 
 
 @in_one_thread

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from ..campaigns import CaseRecord
+from ..campaigns.records import CaseRecord, scaled
 from ..core.arrays import Array
 from ..core.material import Pair
 from ..models import critical_depth
@@ -109,10 +109,7 @@ def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> Hardenin
 def judge_hardening(
     law: HardeningLaw, records: Sequence[CaseRecord]
 ) -> tuple[dict[str, tuple[float, float]], dict[str, tuple[float, float]]]:
-    """Mean and largest errors of a law on pairs held out.
-
-    And shares within one and two deviations.
-    """
+    """A law's errors on pairs held out, mean and largest; shares within one and two deviations."""
     assert law.correction is not None
     found = [_off(law.fitted, _case(law.fitted, r), law.correction) for r in records]
     errors, within = {}, {}
@@ -141,14 +138,8 @@ def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
         & (c["radius"] != c["radius_last_node"])
     )
     rows = np.flatnonzero(seen)[:: -RULES.hardening_every]
-    loading = np.stack(
-        [
-            np.log(c["force"] / (pair.E_reduced * pair.R**2)),
-            np.log(c["radius"] / pair.R),
-            c["sphere"] / (c["sphere"] + c["flat"]),
-        ],
-        axis=-1,
-    )
+    D, F, a, share = scaled(record)
+    loading = np.stack([np.log(F), np.log(a), share], axis=-1)
     turns = []
     for u in record.unloadings:
         total, depth = u.residual_sphere + u.residual_flat, u.depth * pair.R
@@ -160,7 +151,7 @@ def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
             turns.append((np.log(u.depth), total / depth, u.residual_sphere / total, N))
     turned = np.array(turns).reshape(-1, 4)
     return _Case(
-        pair, equivalent(fitted, pair, points=RULES.path_points), np.log(c["delta"][rows] / pair.R),
+        pair, equivalent(fitted, pair, points=RULES.path_points), np.log(D[rows]),
         loading[rows], turned[:, 0], turned[:, 1:],
     )  # fmt: skip
 

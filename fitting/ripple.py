@@ -36,10 +36,7 @@ def ripple_of(table: Table) -> tuple[Array, Array]:
             rms[number] = np.sqrt(np.mean(off[m] ** 2)) if m.any() else 0.0
         return rms[table.case]
 
-    return (
-        of(np.log(table.force / smooth.force)),
-        of(np.log(table.radius / smooth.radius)),
-    )
+    return of(np.log(table.force / smooth.force)), of(np.log(table.radius / smooth.radius))
 
 
 def _smoothed(table: Table, value: Array) -> Array:

@@ -11,6 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from ..campaigns import CaseRecord, read_curves
+from ..campaigns.records import scaled
 from ..core.arrays import Array, Integers, Mask
 from ..core.errors import InputError
 from ..core.material import Pair
@@ -159,15 +160,9 @@ def _loading(records: list[CaseRecord]) -> Table:
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
         usable = c["radius"] <= RULES.form_radius * p.R
-        columns = (
-            np.full(len(c["delta"]), number),
-            c["delta"] / p.R,
-            c["delta"] / critical_depth(p),
-            c["force"] / (p.E_reduced * p.R**2),
-            c["radius"] / p.R,
-            c["sphere"] / (c["sphere"] + c["flat"]),
-            c["radius"] != c["radius_last_node"],
-        )
+        D, *others = scaled(record)
+        seen = c["radius"] != c["radius_last_node"]
+        columns = (np.full(len(D), number), D, c["delta"] / critical_depth(p), *others, seen)
         parts.append([column[usable] for column in columns])
     return Table(*map(np.concatenate, zip(*parts, strict=True)), **_who(records))
 
@@ -189,15 +184,7 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
             if not 0.0 < total < depth or u.curve["radius"][0] > RULES.form_radius * p.R:
                 continue
             exponent = energy_exponent(u.curve["delta"], u.curve["force"], total)
-            rows.append(
-                (
-                    number,
-                    u.depth,
-                    depth / critical_depth(p),
-                    total / depth,
-                    u.residual_sphere / total,
-                    exponent,
-                )
-            )
+            left = (total / depth, u.residual_sphere / total)
+            rows.append((number, u.depth, depth / critical_depth(p), *left, exponent))
     columns = np.array(rows).reshape(-1, 6).T
     return ResidualTable(columns[0].astype(np.int64), *columns[1:], **_who(records))

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.material import Material, Pair
-from .base import ContactLaw, Domain, Kernels, Standing, unwarned
+from .base import ContactLaw, Domain, Standing, unwarned
 from .closed_form import contact
 from .driver import Depths, depths_of
 from .fitted import ClosedForm, bodies_of
@@ -46,10 +46,7 @@ class AnchoredLaw(ContactLaw):
     deepest: float
     hardens: bool
 
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions, those of a table."""
-        return TABLE_KERNELS
+    kernels = TABLE_KERNELS
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; shape (n,)."""

@@ -255,11 +255,6 @@ def remembering(law: Law) -> Law:
     return kept
 
 
-def _no_numbers(_common: Common) -> Sequence[float]:
-    # no lambda: a law crosses processes
-    return ()
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PublishedLaw(ContactLaw):
     """A law given by its four kernels and, where they need some, numbers of its own.
@@ -269,7 +264,7 @@ class PublishedLaw(ContactLaw):
     """
 
     own: Kernels
-    numbers: Callable[[Common], Sequence[float]] = _no_numbers
+    numbers: Callable[[Common], Sequence[float]] | None = None
 
     @property
     def kernels(self) -> Kernels:
@@ -279,7 +274,7 @@ class PublishedLaw(ContactLaw):
     def parameters(self, pair: Pair) -> Array:
         """Common numbers and the law's own, shape (n,)."""
         common = common_parameters(pair)
-        return np.array([*common, *self.numbers(common)], dtype=float)
+        return np.array([*common, *(self.numbers(common) if self.numbers else ())], dtype=float)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -95,10 +95,7 @@ class ClosedForm(ContactLaw):
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     calibration: Calibration | None = None
 
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions, the same for both laws."""
-        return _KERNELS
+    kernels = _KERNELS
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, then those of the pair; shape (n,)."""

@@ -36,7 +36,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from ..core.arrays import Array
 from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
-from .base import ContactLaw, Kernels, Standing
+from .base import ContactLaw, Standing
 from .closed_form import Bodies, PairNumbers, contact, plastic_depth
 from .driver import Depths, Pairs, depths_of
 from .fitted import ClosedForm, bodies_of
@@ -105,10 +105,7 @@ class HardeningLaw(ContactLaw):
     fitted: ClosedForm
     correction: HardeningCorrection | None = None
 
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions, those of a table."""
-        return TABLE_KERNELS
+    kernels = TABLE_KERNELS
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; shape (n,)."""
@@ -137,9 +134,7 @@ class HardeningLaw(ContactLaw):
         self.fitted.warn_outside(plain, depth)
 
 
-def hardening_law(
-    fitted: ClosedForm, correction: HardeningCorrection | None = None
-) -> HardeningLaw:
+def hardening_law(fitted: ClosedForm, correction: HardeningCorrection | None) -> HardeningLaw:
     """Return the law that follows flow curves with `fitted`."""
     return HardeningLaw(
         name="hardening",
@@ -292,9 +287,7 @@ def _moved_odds(share: Array, shift: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _path(law: HardeningLaw, pair: Pair) -> tuple[Array, Any, Uncertainty | None, Array]:
-    """Points of a path: ln(Delta/R), rising, the `Contact` there, how far off both may be, and the
-    least force.
-    """  # noqa: D205
+    """A path's points: ln(Delta/R), rising, the `Contact` there, errors of both, least force."""
     e, correction = equivalent(law.fitted, pair, points=RULES.points), law.correction
     if correction is None:
         x, least = np.log(e.D), least_force(e, np.log(e.D))

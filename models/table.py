@@ -23,7 +23,7 @@ from scipy.interpolate import PchipInterpolator
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Pair
-from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
+from .base import ContactLaw, Domain, DomainWarning, Standing
 from .driver import Depths, Pairs, depths_of
 from .kernel import common_parameters, critical_depth
 from .rules import RULES
@@ -167,10 +167,7 @@ class TableLaw(ContactLaw):
 
     tables: tuple[PairTable, ...]
 
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions, the same for every table."""
-        return TABLE_KERNELS
+    kernels = TABLE_KERNELS
 
     def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; one without a table is refused."""
@@ -254,6 +251,5 @@ def table_law(tables: Sequence[PairTable], *, name: str) -> TableLaw:
         equations="no form: a table",
         standing=Standing.OWN_SOURCE,
         domain=Domain.down_to(deepest, note=f"Delta_over_R to {deepest:.3g}"),
-        breaks=(),
         tables=tuple(tables),
     )

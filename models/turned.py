@@ -187,10 +187,7 @@ def _stiffer(body: Material, s: float) -> Material:
 
 @lru_cache(maxsize=64)
 def _similar_kernels(own: Kernels) -> Kernels:
-    loading: Any = own.loading
-    radius: Any = own.radius
-    unloading: Any = own.unloading
-    residual: Any = own.residual
+    loading, radius, unloading, residual = own
 
     @njit(LOADING_SIGNATURE, _nrt=False)
     def similar_loading(par, depth):  # type: ignore[no-untyped-def]

@@ -12,6 +12,7 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
+from dentscope.core.provenance import file_digest
 from dentscope.models.coefficients import drawn_from
 from dentscope.studies.challenge.archive import SEALS
 from dentscope.studies.proof.seal import tree_hash
@@ -24,10 +25,7 @@ RUN = "dentscope campaign run, publish"
 PROOFS = {
     "ranks.jsonl": ("draws from the priors", "python -m dentscope.studies.calibration"),
     "ranks-at-data.jsonl": ("shipped recordings", "python -m dentscope.studies.at_data"),
-    "third-world.json": (
-        "its plan",
-        "python -m dentscope.studies.proof.third_world run, score",
-    ),
+    "third-world.json": ("its plan", "python -m dentscope.studies.proof.third_world run, score"),
 }
 LEVELS = "dentscope verify --only levels"
 DRAWN = "python -m dentscope.studies.challenge.draw"
@@ -50,7 +48,7 @@ def digest(files: Iterable[Path]) -> str:
     """Return the digest of one file, or of several by their names."""
     found = sorted(files)
     if len(found) == 1:
-        return hashlib.sha256(found[0].read_bytes()).hexdigest()
+        return file_digest(found[0])
     text = hashlib.sha256()
     for path in found:
         text.update(path.relative_to(ROOT).as_posix().encode() + b"\0")
@@ -69,10 +67,7 @@ def parts_read() -> list[str]:
     content = json.loads(COEFFICIENTS.read_text())
     parts = (content, content["hardening"])
     read = {one["sha256"] for part in parts for one in part["provenance"]["campaigns"]}
-    names = {
-        hashlib.sha256(p.read_bytes()).hexdigest(): p.name
-        for p in of_folder("data/campaign", ".h5")
-    }
+    names = {file_digest(p): p.name for p in of_folder("data/campaign", ".h5")}
     unknown = read - set(names)
     return sorted(names[one] for one in read & set(names)) + sorted(u[:SHORT] for u in unknown)
 

@@ -26,9 +26,7 @@ def notebook(script: str) -> str:
 
 
 def _cell(kind: str, text: str) -> dict[str, object]:
-    code: dict[str, object] = {}
-    if kind == "code":
-        code = {"execution_count": None, "outputs": []}
+    code = {"execution_count": None, "outputs": []} if kind == "code" else {}
     return {"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True), **code}
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array, Indices
-from ..errors import InputError, InputErrors
+from ..errors import InputErrors
 from ..flow import FlowCurve, tabulated
 from ..output import csv_text
 from ..rules import RULES
@@ -92,10 +92,8 @@ class MeasuredFlow:
         """
         rows = self.tests[0]
         p, S = self.strain[rows], self.stress[rows] * (strength / self.strength)
-        cell = np.floor(RULES.rows_a_decade * np.log10(np.maximum(p, RULES.strain_seen))).astype(
-            int
-        )
-        _, part = np.unique(cell, return_inverse=True)
+        decades = np.log10(np.maximum(p, RULES.strain_seen))
+        _, part = np.unique(np.floor(RULES.rows_a_decade * decades), return_inverse=True)
         count = np.bincount(part)
         p, S = np.bincount(part, p) / count, np.bincount(part, S) / count
         if p[0] > 0.0:
@@ -159,9 +157,8 @@ def read_flow_curve(
                 row=table.rows[int(rows[k + 1])], column=COLUMNS[0],
                 allowed="a strain that increases within each test",
             )  # fmt: skip
-    if problems.found or not len(table.rows):
-        raise InputErrors(
-            tuple(problems.found)
-            or (InputError("no row", source=str(path), allowed="two or more rows"),)
-        )
+    if not table.rows:
+        problems.add("no row", allowed="two or more rows")
+    if problems.found:
+        raise InputErrors(tuple(problems.found))
     return flow

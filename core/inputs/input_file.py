@@ -41,10 +41,7 @@ def path_of(given: object, *, key: str, allowed: str) -> Path:
 
 
 def file_beside(source: str | Path, name: str, *, key: str) -> Path:
-    """Return the file that a key of another one names, from that one's folder.
-
-    Refused if missing.
-    """
+    """Return the file that a key of another one names, from its folder; refused if missing."""
     path = Path(source).parent / name
     if not os.path.exists(path):
         raise InputError(

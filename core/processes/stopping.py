@@ -28,10 +28,7 @@ _DEFAULT: dict[int, Any] = {
 
 
 class Stopped(BaseException):
-    """The user or the system asks the command to end, by a signal's number.
-
-    No library takes it for a Ctrl-C of its own.
-    """
+    """A signal, by its number, asks the command to end; no library takes it for its own Ctrl-C."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__()

@@ -95,10 +95,7 @@ class _Written(ast.NodeTransformer):
 
 
 def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
-    """Write the law in every language, and as a normal model of LAMMPS; return the files.
-
-    The folder is made if needed.
-    """
+    """Write the law in every language and for LAMMPS; the folder is made if needed."""
     texts = {
         f"{NAME}.py": python_source(law),
         f"{NAME}.h": c_header(law),
