@@ -18,7 +18,6 @@ from .shared.terminal import say, tell_first_use
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
 
-
 _OUT = Path("build/diagnose")
 
 

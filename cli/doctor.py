@@ -43,9 +43,7 @@ def doctor() -> int:
         typer.echo(f"{mark:8} {finding.name:20} {finding.state}")
         if not finding.fine:
             typer.echo(f"{'':8} {'':20} -> {finding.remedy}")
-    if any(finding.needed and not finding.fine for finding in findings):
-        return EXIT_ENVIRONMENT
-    return 0
+    return EXIT_ENVIRONMENT if any(one.needed and not one.fine for one in findings) else 0
 
 
 def examine() -> tuple[EnvironmentFinding, ...]:
@@ -63,13 +61,11 @@ def examine() -> tuple[EnvironmentFinding, ...]:
         EnvironmentFinding("workshop", "here" if studies.present() else studies.WHERE),
         _gmsh(),
         EnvironmentFinding(
-            "off-screen pictures",
-            "pyvista renders" if renders else "no pictures in space",
-            fine=renders,
-            remedy=_REMEDY,
+            "off-screen pictures", "pyvista renders" if renders else "no pictures in space",
+            fine=renders, remedy=_REMEDY,
         ),
         _compiled_code(),
-    )
+    )  # fmt: skip
 
 
 def _gmsh() -> EnvironmentFinding:

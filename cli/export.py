@@ -116,13 +116,9 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     files = {"dem.csv": csv_text(cells, header=HEAD)}
     if ball.second is None or ball.second.radius > 0.0:
         files["lammps.in"] = lammps_lines(
-            rows,
-            ball.pair,
-            mass=ball.mass,
-            friction=ball.friction,
-            of_balls=between,
+            rows, ball.pair, mass=ball.mass, friction=ball.friction, of_balls=between,
             second=ball.second,
-        )
+        )  # fmt: skip
     for name, text in (files | _fragments(ball, chosen, rows)).items():
         shown.print(f"written: {write_file(out / name, text)}")
 
@@ -185,9 +181,9 @@ def _speeds(text: str) -> list[float]:
     if not numbers or any(map(SPEEDS.wanted, numbers)) or (":" in text and not pair):
         allowed = "FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]"
         raise misused(f"{text!r}", key="--speed", allowed=allowed)
-    return (
-        np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist() if ":" in text else numbers
-    )
+    if ":" in text:
+        return np.geomspace(*numbers, _SPEEDS_EXPORTED).tolist()
+    return numbers
 
 
 def _misses(rows: list[ExportedRow]) -> tuple[list[str], list[list[str]]]:

@@ -70,30 +70,26 @@ def fit(
 
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
+    from ..fitting import report
     from ..fitting.coefficients import write_coefficients
     from ..fitting.refit import refit
-    from ..fitting.report import (
-        coefficient_rows,
-        error_rows,
-        stated_within,
-        uncertainty_rows,
-        write_report,
-    )
 
     found = refit(files, progress=console.print)
     result, content = found.laws, found.content
     write_coefficients(content, out / "fitted.json")
-    _show(console, coefficient_rows(content))
+    _show(console, report.coefficient_rows(content))
     columns = [
         ("compact, left out", result.compact.held_out),
         ("fitted, left out", result.fitted.held_out),
         *((f"{name}, validation", errors) for name, errors in found.validation),
     ]
-    _show(console, error_rows(columns))
-    _show(console, uncertainty_rows(stated_within(content)))
+    _show(console, report.error_rows(columns))
+    _show(console, report.uncertainty_rows(report.stated_within(content)))
     if found.hardens:
         _show_hardening(console, content)
-    page = write_report(result, content, found.table, found.turns, out, validation=found.validation)
+    page = report.write_report(
+        result, content, found.table, found.turns, out, validation=found.validation
+    )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
         _publish(content, out)

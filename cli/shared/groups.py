@@ -15,24 +15,13 @@ from ..studies import COMMANDS as _WORKSHOP
 from .places import misused
 
 SECTIONS = (
-    (
-        "Your own",
-        (
-            "impact",
-            "diagnose",
-            "metal",
-            "recordings",
-            "reduce",
-            "case",
-            "laws",
-            "export",
-            "inverse",
-        ),
-    ),
+    ("Your own", (
+        "impact", "diagnose", "metal", "recordings", "reduce", "case", "laws", "export", "inverse",
+    )),
     ("Behind the law", ("campaign", "fit")),
     ("To begin", ("examples", "materials", "keys", "doctor", "version")),
     ("Workshop, in a checkout only", tuple(name for name in _WORKSHOP if " " not in name)),
-)
+)  # fmt: skip
 """Commands as the first help shows them; what stands in none comes last."""
 
 

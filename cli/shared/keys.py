@@ -83,15 +83,10 @@ def keys_of(kind: str) -> list[Key]:
 
         columns = {**CONDITIONS, **MEASURED}
         return [
-            Key(
-                "",
-                name,
-                f"{c.meaning[:1].upper()}{c.meaning[1:]}.",
-                "a text" if c.kind == "text" else _with_unit(c.allowed, name),
-                _LEFT_OUT,
-            )
+            Key("", name, f"{c.meaning[:1].upper()}{c.meaning[1:]}.",
+                "a text" if c.kind == "text" else _with_unit(c.allowed, name), _LEFT_OUT)
             for name, c in columns.items()
-        ]
+        ]  # fmt: skip
     module, table = _SCHEMAS[kind]
     return list(_keys(getattr(import_module(f"...{module}", __package__), table), ""))
 
