@@ -20,7 +20,6 @@ from ..core.rig import FrictionTable, MaterialTable, value_of
 if TYPE_CHECKING:
     from ..fem import Accuracy, ContactProblem
 
-
 Level = Literal["production", "quick", "smoke"]
 """How finely a pair is solved; smoke is coarse, for a first look."""
 

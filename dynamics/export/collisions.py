@@ -122,8 +122,5 @@ def _unit_blow(law: Damped, damping: float) -> ExportedBlow:
 
 def entered_for(damping: float) -> float:
     """Return the restitution to enter for Tsuji's damping; none is 1.0007 (the polynomial)."""
-
-    def missed(entered: float) -> float:
-        return math.fsum(a * entered**k for k, a in enumerate(TSUJI_DAMPING)) - damping
-
-    return float(brentq(missed, 0.0, 1.02))
+    terms = tuple(enumerate(TSUJI_DAMPING))
+    return float(brentq(lambda e: math.fsum(a * e**k for k, a in terms) - damping, 0.0, 1.02))

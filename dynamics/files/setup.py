@@ -50,7 +50,6 @@ DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
 FOLLOWING = "hardening"
 """Ours of metals with a flow curve; it comes first where there is one."""
 
-
 # limit: speeds at neither of which a mechanism that is refused acts [m/s]
 _OTHER_SPEEDS = (1e-3, 1e2)
 

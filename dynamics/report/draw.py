@@ -27,7 +27,6 @@ SWEPT = (
 )  # fmt: skip
 """Observables that the picture of a sweep shows, where they are anything."""
 
-
 CONDITIONS = {
     "impact_speed_m_s": "impact speed [m/s]", "drop_height_m": "drop height [m]",
     "angle_deg": "angle [degrees]", "friction": "friction [-]", "mass_kg": "mass [kg]",
@@ -104,13 +103,13 @@ def draw_sweep(
 
 def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts]) -> list[str]:
     """Return the conditions of a sweep along which nothing that the picture shows changes."""
+    if not any((found["outcome"] == "completed").any() for found in curves.values()):
+        return []
     shape = [len(values) for values in swept.values()]
     tables = [found[name].reshape(shape) for found in curves.values() for name in SWEPT]
 
-    ended = any((found["outcome"] == "completed").any() for found in curves.values())
-
     def idle(axis: int) -> bool:
-        return ended and all(
+        return all(
             np.allclose(t, t.take([0], axis), rtol=_NONE, atol=0.0, equal_nan=True) for t in tables
         )
 

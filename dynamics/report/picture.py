@@ -29,7 +29,6 @@ AGAINST_TIME = (
 )
 """Column, axis, scale, and what counts as nothing at all [SI]."""
 
-
 # limit: time from which histories are in ms [s]; below, five digits of a tick would overlap
 _SHORT = 1e-4
 
