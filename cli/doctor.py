@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import typer
 
@@ -20,19 +20,14 @@ EXIT_ENVIRONMENT = 1
 """Exit code for an environment in which the solver cannot run."""
 
 
-@dataclass(frozen=True, slots=True)
-class EnvironmentFinding:
-    """One thing looked at.
-
-    `name`, `state`: what was looked at and what was found; `fine`: whether it works; `needed`:
-    whether the solver cannot run without it; `remedy`: what to do when it does not work.
-    """
+class EnvironmentFinding(NamedTuple):
+    """One thing looked at."""
 
     name: str
-    state: str
+    state: str  # what was found
     fine: bool = True
-    needed: bool = False
-    remedy: str = ""
+    needed: bool = False  # the solver cannot run without it
+    remedy: str = ""  # what to do when it does not work
 
 
 def doctor() -> int:

@@ -28,10 +28,7 @@ def present() -> bool:
 
 
 def needed_for(what: str) -> None:
-    """Pass where the workshop is present.
-
-    Elsewhere refuse the command `what` and say where to get it.
-    """
+    """Refuse the command `what` where the workshop is not present, and say where to get it."""
     if not present():
         raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
 

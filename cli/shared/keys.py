@@ -43,18 +43,13 @@ _UNITS = {
 
 
 class Key(NamedTuple):
-    """One key of a file.
+    """One key of a file."""
 
-    - `table`: where it stands, as in the file: `[target]`, or empty at the top.
-    - `name`, `meaning`, `allowed`, `default`: what is written, what it says, what is accepted, and
-      what holds without it.
-    """
-
-    table: str
+    table: str  # where it stands, as in the file: `[target]`, or empty at the top
     name: str
     meaning: str
     allowed: str
-    default: str
+    default: str  # what holds without it
 
 
 def keys(
