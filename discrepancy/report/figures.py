@@ -48,10 +48,8 @@ def comparison(
 ) -> str:
     """Return measured beside the simulations, and the differences below, for one observable.
 
-    - `points`: numbers of one observable.
-    - `against`: what the axis shows.
-    - `strikers`: all strikers of the report, for their markers.
-    - `key`: begins the ids of the figure's elements; no other figure of the page has it.
+    `against`: what the axis shows; `strikers`: all of the report, for their markers; `key`: begins
+    the ids of the figure's elements, and no other's of the page.
     """
     row = OBSERVABLES[points[0].observable]
     upper, lower, left = _plots(points, against)
@@ -191,6 +189,5 @@ def path(history: Sequence[After]) -> str:
     for place, one in zip(places.tolist(), history, strict=True):
         panel.text(place, f"after session {one.batch:g}")
         panel.text(place, counted(one.trials, "trial"), line=2)
-    return figure(
-        [panel], "probability of each explanation after each session", width=_WIDTH, height=216.0
-    )
+    label = "probability of each explanation after each session"
+    return figure([panel], label, width=_WIDTH, height=216.0)

@@ -32,10 +32,7 @@ class Panel(NamedTuple):
 
 
 def write_report(verdict: Verdict, path: Path) -> tuple[Path, ...]:
-    """Write the report, and beside it what its figures show as JSON and CSV.
-
-    Returned: the files that were written.
-    """
+    """Write the report, and what its figures show as JSON and CSV beside it; return the files."""
     story = story_of(verdict)
     numbers = json.dumps(_finite(story.to_dict()), indent=1, allow_nan=False)
     contents = {

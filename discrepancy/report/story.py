@@ -47,50 +47,33 @@ class ToldCells(NamedTuple):
 
 @dataclass(frozen=True)
 class Story:
-    """Everything that a report says.
+    """Everything that a report says, in sentences, bars and tables."""
 
-    - `name`, `finding`, `why`, `summary`: the set, the finding in one sentence, why in three, and
-      what was compared.
-    - `points`, `against`, `strikers`: what is drawn, against what, and who struck.
-    - `series`: the three simulations that are drawn, each with what its fit took.
-    - `misses`, `audit`, `reasons`, `notes`: sentences: where the simulation misses, contradictions
-      of the inputs, how the verdict came about, what was assumed.
-    - `nowhere`: what to think of it where places and verdict seem to contradict each other.
-    - `parts`, `explanations`: probability of each mechanism to take part, and of each explanation.
-    - `found`: numbers of the mechanisms that are named, with intervals.
-    - `prediction`: how the trials left out of the fit are predicted, in one sentence.
-    - `doubt`: what the uncertainty of the comparison is made of.
-    - `numbers`, `scores`, `excluded`, `limits`: tables for those who want to know.
-    - `next_step`, `further`: whether to go on; steps of the next session, and what its outcome
-      would mean.
-    - `changed`: what the last session changed.
-    """
-
-    name: str
-    finding: str
-    why: str
-    summary: str
-    points: tuple[SeriesPoint, ...]
+    name: str  # of the set
+    finding: str  # in one sentence
+    why: str  # in three
+    summary: str  # what was compared
+    points: tuple[SeriesPoint, ...]  # what is drawn
     against: tuple[Against, ...]
     strikers: tuple[str, ...]
-    series: tuple[str, str, str]
-    misses: tuple[str, ...]
-    nowhere: str
-    audit: tuple[str, ...]
-    reasons: tuple[str, ...]
-    notes: tuple[str, ...]
-    parts: tuple[Bar, ...]
+    series: tuple[str, str, str]  # the simulations that are drawn, each with what its fit took
+    misses: tuple[str, ...]  # where the simulation misses
+    nowhere: str  # what to think of it where places and verdict seem to contradict each other
+    audit: tuple[str, ...]  # contradictions of the inputs
+    reasons: tuple[str, ...]  # how the verdict came about
+    notes: tuple[str, ...]  # what was assumed
+    parts: tuple[Bar, ...]  # probability of each mechanism to take part
     explanations: tuple[Bar, ...]
-    found: ToldCells
-    prediction: str
-    doubt: tuple[Bar, ...]
+    found: ToldCells  # numbers of the mechanisms that are named, with intervals
+    prediction: str  # how the trials left out of the fit are predicted
+    doubt: tuple[Bar, ...]  # what the uncertainty of the comparison is made of
     numbers: ToldCells
     scores: ToldCells
     excluded: ToldCells
     limits: ToldCells
-    next_step: str
-    further: tuple[str, ...]
-    changed: tuple[str, ...]
+    next_step: str  # whether to go on
+    further: tuple[str, ...]  # steps of the next session, and what its outcome would mean
+    changed: tuple[str, ...]  # by the last session
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the figures show, for programs."""
