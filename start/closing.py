@@ -56,16 +56,11 @@ class Compared(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Closed:
-    """What finite elements with the inferred constants say of the recordings.
+    """What finite elements with the inferred constants say of the recordings."""
 
-    - `constants`: mechanism to its numbers, from the conditions that were kept in.
-    - `rows`: every number of the conditions that were solved.
-    - `tables`: the solved pairs, usable as contact laws where no rate acts.
-    """
-
-    constants: Constants
-    rows: tuple[Compared, ...]
-    tables: tuple[PairTable, ...]
+    constants: Constants  # by mechanism, from the conditions that were kept in
+    rows: tuple[Compared, ...]  # every number of the conditions that were solved
+    tables: tuple[PairTable, ...]  # the solved pairs, contact laws where no rate acts
 
     def miss(self, which: str, *, kept_out: bool) -> float:
         """Rms distance of a simulation from the recordings, in their standard errors."""

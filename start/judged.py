@@ -52,15 +52,12 @@ _HARDENS = ("hardening", "validation-hardening")
 
 
 class Departure(NamedTuple):
-    """How far a law is from finite elements: largest |ln(law/finite elements)| of each.
-
-    `at` are the approaches over R at which they are.
-    """
+    """How far a law is from finite elements: largest |ln(law/finite elements)| of each."""
 
     force: float
     dent: float
     restitution: float
-    at: tuple[float, float, float] = (math.nan, math.nan, math.nan)
+    at: tuple[float, float, float] = (math.nan, math.nan, math.nan)  # their approaches over R
 
     @property
     def worst(self) -> float:
@@ -195,9 +192,8 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
         order = np.argsort(delta)
         returned = float(np.trapezoid(force[order], delta[order]))
         taken = float(np.interp(depth, c["delta"], spent))
-        rows.append(
-            (depth, u.residual_sphere + u.residual_flat, math.sqrt(max(returned, 0.0) / taken))
-        )
+        left = u.residual_sphere + u.residual_flat
+        rows.append((depth, left, math.sqrt(max(returned, 0.0) / taken)))
     deepest = float(c["delta"][-1]) / pair.R * (1.0 + 1e-9)
     loaded, carried = c["delta"][inside], c["force"][inside]
     return Reference(pair, record.case.name, distance, loaded, carried, tuple(rows), deepest)
@@ -215,11 +211,10 @@ def judged(
     found: dict[str, Departure] = {}
     for law in laws:
         try:
-            found[law.name] = (
-                departure(law, reference) if reference else _from_elastic(law, pair, last)
-            )
+            far = departure(law, reference) if reference else _from_elastic(law, pair, last)
         except InputError:  # the table of another pair
             continue
+        found[law.name] = far
     return reference, found
 
 
