@@ -35,16 +35,12 @@ class ExportedBlow(NamedTuple):
 
 
 class Damped(NamedTuple):
-    """A damped contact law.
+    """A damped contact law."""
 
-    `name`: of the law in tables; `power`: exponent of its elastic force; `force`: from depth, rate
-    and damping, all without dimension; `most`: largest damping that is looked at.
-    """
-
-    name: str
-    power: float
-    force: Callable[[float, float, float], float]
-    most: float
+    name: str  # in tables
+    power: float  # exponent of its elastic force
+    force: Callable[[float, float, float], float]  # of depth, rate, damping, without dimension
+    most: float  # largest damping that is looked at
 
 
 TSUJI_DAMPING = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)

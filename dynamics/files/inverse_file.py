@@ -98,10 +98,7 @@ class InverseRow:
 
 
 def read_inverse(path: Path) -> list[InverseRow]:
-    """Read an inverse file and infer each trial; every mistake is a line.
-
-    A friction coefficient at which the tip sticks is one.
-    """
+    """Read an inverse file and infer each trial; every mistake is a line, as a tip that sticks."""
     source = str(path)
     content = read_toml(path)
     _check_striker(content, source)

@@ -144,12 +144,10 @@ class Setup:
     content: dict[str, Any]
     source: str
     numbers: RigNumbers
-    pair: Pair | None = None
-    """In place of the file's two bodies."""
+    pair: Pair | None = None  # in place of the file's two bodies
+    # numbers of the file that `[sweep]` lets run through values
     keys: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    """Numbers of the file that `[sweep]` lets run through values."""
-    rigs: tuple[Setup, ...] = ()
-    """The same with each combination of these, the first slowest."""
+    rigs: tuple[Setup, ...] = ()  # the same with each combination of these, the first slowest
 
     def __repr__(self) -> str:
         return f"Setup({self.name!r}, of {self.source}, by {', '.join(self.laws)})"
@@ -302,10 +300,8 @@ class Setup:
         if self.rigs:
             first, *others = (one.swept(law, change=change) for one in self.rigs)
             grid = np.meshgrid(*self.keys.values(), indexing="ij")
-            each = {
-                k: np.repeat(x.ravel(), len(first)) for k, x in zip(self.keys, grid, strict=True)
-            }
-            return Impacts({**each, **first.joined(*others).columns})
+            each = zip(self.keys, (np.repeat(x.ravel(), len(first)) for x in grid), strict=True)
+            return Impacts({**dict(each), **first.joined(*others).columns})
         plain = self.plain(law)
         given = combinations(self.sweep, plain, stated=self.stated)
         asked = self.asked_of_sweep

@@ -40,10 +40,7 @@ EXACT = ("contacts", "energy_residual", "momentum_residual")
 
 
 def impact_row(impact: Impact) -> dict[str, Any]:
-    """Return one impact as a row: its observables, counts and ending.
-
-    Half way through, where a budget ended it, it has no observables yet: they are nan.
-    """
+    """Return one impact as a row: observables, nan where a budget ended it, counts and ending."""
     numbers = {**impact.observables, "mean_force_N": impact.mean_force_N}
     return {
         **(numbers if impact.outcome.completed else dict.fromkeys(numbers, math.nan)),
@@ -56,10 +53,7 @@ def impact_row(impact: Impact) -> dict[str, Any]:
 def write_hdf5(
     path: Path, traces: Mapping[str, Trace], *, about: Mapping[str, str] | None = None
 ) -> None:
-    """Write histories and observables, one group for each law; units are in the names.
-
-    `about` are texts for people: name, materials, who measured it.
-    """
+    """Write histories and observables, a group a law, units in the names; `about`: for people."""
     stream = io.BytesIO()
     with h5py.File(stream, "w") as store:
         for key, value in environment().items():

@@ -309,10 +309,7 @@ def _moving(k: int, step: float) -> Change:
 def _of_inputs(
     setup: Setup, law: ContactLaw, names: Sequence[str], ended: Callable[[Setup], Any]
 ) -> dict[str, dict[str, Any]]:
-    """Change of each number by one standard deviation of each uncertain input, by its key.
-
-    `ended` gives a set-up's numbers by name.
-    """
+    """Change of the numbers that `ended` gives by one standard deviation of each input, by key."""
     parts = {}
     for key, share, up, down in _shifted(setup, law):
         high, low = ended(up), ended(down)
@@ -345,10 +342,7 @@ def _of_law(
 
 
 def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
-    """Return standard deviations along a sweep by one law, (n,) each, as those of a blow.
-
-    Where an impact did not end, there is none.
-    """
+    """Return standard deviations along a sweep by one law, (n,); none where a blow did not end."""
     if not all(found["outcome"] == "completed"):
         return {}
     if setup.rigs:

@@ -204,23 +204,21 @@ def _straight(scene: Scene) -> bool:
 
 
 def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    straight, inertia = _straight(scene), setup.file.strikers[setup.striker].inertia_kg_m2
+    straight, mu = _straight(scene), scene.friction.mu
+    inertia = setup.file.strikers[setup.striker].inertia_kg_m2
     if straight and inertia is not None:
         key = f"strikers.{setup.striker}.inertia_kg_m2"
         yield f"{key}, {inertia.value:g}, does nothing in a straight blow: nothing turns"
-    if straight and scene.friction.mu > 0.0:
+    if straight and mu > 0.0:
         yield (
-            f"friction, {scene.friction.mu:g}, does nothing in a straight blow by these laws; "
+            f"friction, {mu:g}, does nothing in a straight blow by these laws; "
             "dentscope case solves the contact with it"
         )
-    elif not straight and scene.friction.mu > 0.0:
-        if scene.friction.mu > _RUBS:
-            mu = scene.friction.mu
+    elif not straight and mu > 0.0:
+        if mu > _RUBS:
             yield f"friction, {mu:g}, is more than metals have; {mu:g} % would be {mu / 100.0:g}"
-        without = repeated(
-            setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
-        )
-        yield f"without friction: {effect(without, found)}"
+        smooth = scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
+        yield f"without friction: {effect(repeated(setup, smooth), found)}"
     elif not straight and setup.file.friction.coefficient is None:
         yield "friction.coefficient is not stated: nothing acts along the flat"
 

@@ -14,16 +14,12 @@ if TYPE_CHECKING:
 
 
 class RigShape(NamedTuple):
-    """Outlines in the plane of the motion, the touch at the origin, the normal along y [m].
+    """Outlines in the plane of the motion, the touch at the origin, the normal along y [m]."""
 
-    `striker`, `struck`: (n, 2) corners; `window`: half the width that shows the rig; `thickness`:
-    of the flat; infinite where the file states none, or a sphere is struck.
-    """
-
-    striker: Array
-    struck: Array
-    window: float
-    thickness: float
+    striker: Array  # (n, 2) corners
+    struck: Array  # (n, 2)
+    window: float  # half the width that shows the rig
+    thickness: float  # of the flat; infinite where the file states none, or a sphere is struck
 
 
 def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
