@@ -208,8 +208,7 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
         return
     store, keys = Store(out), set(distinct_cases(design))
     tell(judged([s for s in store.summaries() if s.id in keys and s.status == "done"]))
-    records = _done(design, store)
-    found = largest_difference(records, read_published(PUBLISHED))
+    found = largest_difference(_done(design, store), read_published(PUBLISHED))
     if found.cases:
         finer = "" if found.same else ", which were solved at another resolution"
         typer.echo(

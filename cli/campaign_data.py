@@ -57,8 +57,7 @@ def show(
     console.print(f"{record.case.name}: {record.status} {record.message}".rstrip())
     console.print(f"{source}, {record.case.id[:12]}", soft_wrap=True)
     c = record.curve
-    elastic = pair.Sy_min == float("inf")
-    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
+    scale, over = (pair.Sy_min, "H/Sy_min") if pair.Sy_min < float("inf") else (1e6, "H [MPa]")
     rows = [
         (
             f"{c['delta'][i] / pair.R:.4g}", f"{c['force'][i]:.4g}", f"{c['radius'][i] * 1e3:.4g}",

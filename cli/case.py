@@ -183,8 +183,7 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
 
 def _show(console: Any, solution: Any, uncertainty: Any) -> None:
     pair, c = solution.problem.pair, solution.loading
-    elastic = pair.Sy_min == float("inf")
-    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
+    scale, over = (pair.Sy_min, "H/Sy_min") if pair.Sy_min < float("inf") else (1e6, "H [MPa]")
     u = uncertainty
     rows = [
         (

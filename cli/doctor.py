@@ -46,8 +46,7 @@ def examine() -> tuple[EnvironmentFinding, ...]:
     from ..core.provenance import environment
     from ..core.rendering import offscreen_available
 
-    versions = environment()
-    shown = ", ".join(f"{name} {version}" for name, version in versions.items())
+    shown = ", ".join(f"{name} {version}" for name, version in environment().items())
     renders = offscreen_available()
     return (
         EnvironmentFinding("versions", shown),

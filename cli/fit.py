@@ -114,8 +114,7 @@ def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish:
     if not refit_hardening(content, read_sources(files), progress=console.print):
         raise InputError("no metals that harden", key="campaigns", allowed="design hardening")
     _show_hardening(console, content)
-    written = write_coefficients(content, out / "fitted.json")
-    console.print(f"coefficients: {written}")
+    console.print(f"coefficients: {write_coefficients(content, out / 'fitted.json')}")
     if publish:
         _publish(content, None)
         console.print("the law of metals that harden now uses these coefficients")

@@ -14,7 +14,6 @@ import typer
 from ..core.errors import InputError
 
 WHERE = "not installed: get a checkout or the source archive of dentscope, `make install` there"
-"""Where the workshop is to be had."""
 
 COMMANDS = ("figures", "verify", "proof", "challenge", "campaign reproduction")
 """What the user types after `dentscope`; the first word is the module that holds it."""

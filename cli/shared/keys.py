@@ -23,8 +23,6 @@ FILES = {
     "set": "set.toml of a recording set",
     "trials": "columns of a set's trials.csv",
 }
-"""What there are keys of."""
-
 _SCHEMAS = {
     "case": ("start.case_file", "CaseFile"),
     "impact": ("dynamics.files.setup", "SetupFile"),

@@ -72,8 +72,7 @@ def say(line: str) -> None:
     if not sys.stdout.isatty() or len(line) <= _columns():
         typer.echo(line)
         return
-    indent = len(line) - len(line.lstrip())
-    typer.echo(wrapped(line.strip(), indent=indent, further=2))
+    typer.echo(wrapped(line.strip(), indent=len(line) - len(line.lstrip()), further=2))
 
 
 def _columns() -> int:
