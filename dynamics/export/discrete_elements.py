@@ -176,7 +176,6 @@ HEAD = (
     "depth_missed_percent", "peak_force_missed_percent", "contact_time_missed_percent",
     "restitution_missed",
 )  # fmt: skip
-"""Columns of the table."""
 
 
 def table(rows: Sequence[ExportedRow], *, law: str, contact: str) -> list[tuple[str | float, ...]]:

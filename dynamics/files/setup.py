@@ -330,8 +330,7 @@ def read_setup(path: Path) -> Setup:
 def setup_of(content: dict[str, Any], *, source: str) -> Setup:
     """Check the content of a set-up file; `source` names it in errors, a line each."""
     plain, keys, files = rigs(content, SetupFile.model_fields, source=source)
-    count = math.prod(len(values) for values in keys.values())
-    setup = _alone(plain, source=source, rigs=count)
+    setup = _alone(plain, source=source, rigs=math.prod(map(len, keys.values())))
     try:
         each = tuple(_alone(one, source=source) for one in files)
     except InputError as wrong:

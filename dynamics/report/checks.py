@@ -277,8 +277,7 @@ def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         )
     if math.isfinite(scene.force.edge):
         return
-    ends = replace(scene.force, edge=scene.striker.radius)
-    ended = repeated(setup, scene.with_(force=ends))
+    ended = repeated(setup, scene.with_(force=replace(scene.force, edge=striker.radius)))
     if abs(ended.restitution / found.restitution - 1.0) > _WORTH_A_LINE:
         yield (
             f"the tip's curvature is taken to go on; ended at the rod's side (impact.finite_tip): "

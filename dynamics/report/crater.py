@@ -37,8 +37,7 @@ def surfaces_left(
     at an edge, or that is like no published one, is not known. `std` gives the standard deviation
     of a field of `Impact`; without it no error is told.
     """
-    marks = found.spot.imprints
-    mark = max(marks, key=lambda one: one.peak, default=None)
+    mark = max(found.spot.imprints, key=lambda one: one.peak, default=None)
     peak = found.spot.tip_peak if mark is None else mark.peak
     if not peak > 0.0 or not found.residual_m > 0.0:
         return []

@@ -41,10 +41,9 @@ def picture(blow: Blow, *, exact: bool = False) -> Figure:
     """
     traces = list(blow.traces.items())
     shown = [
-        panel
-        for panel in AGAINST_TIME
-        if any(np.ptp(trace.column(panel[0])) > panel[3] for _, trace in traces)
-    ]
+        (name, label, scale) for name, label, scale, nothing in AGAINST_TIME
+        if any(np.ptp(trace.column(name)) > nothing for _, trace in traces)
+    ]  # fmt: skip
     law, left = _left(blow, exact=exact)
     made, axes = panels(2 + bool(left) + len(shown))
     _draw_rig(axes[0], blow, left)
@@ -164,10 +163,10 @@ def _draw_curves(
             depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,
             **style,
         )  # fmt: skip
-        for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
+        for axis, (name, _, scale) in zip(axes[1:], shown, strict=True):
             axis.plot(per_s * trace.column("time_s"), scale * trace.column(name), **style)
     axes[0].set(xlabel=depth_label, ylabel=force_label)
-    for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
+    for axis, (_, label, _) in zip(axes[1:], shown, strict=True):
         axis.set(xlabel=f"time [{time}]", ylabel=label)
     for axis in axes:
         axis.grid(alpha=0.3)
