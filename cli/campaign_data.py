@@ -116,13 +116,9 @@ def refine(
         return EXIT_NOT_CONVERGED
     found = largest_difference([record], [other])
     steps = steps_not_in(record.curve, other.curve)
-    for name, own, shown, far in zip(
-        ("F", "a", "delta_s*"),
-        (record.quality.force_step, record.quality.radius_step, record.quality.share_step),
-        steps,
-        (found.force, found.radius, found.share),
-        strict=True,
-    ):
+    before = (record.quality.force_step, record.quality.radius_step, record.quality.share_step)
+    apart = (found.force, found.radius, found.share)
+    for name, own, shown, far in zip(("F", "a", "delta_s*"), before, steps, apart, strict=True):
         typer.echo(
             f"{name:9} largest step {own:.2%}, of it not in the finer solve {shown:.2%}; "
             f"largest difference {far:.2%}"

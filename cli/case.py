@@ -181,20 +181,18 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
     return write_file(path, case_image(case, replace(solution, snapshots=()), also=add))
 
 
-def _show(console: Any, solution: Any, uncertainty: Any) -> None:
+def _show(console: Any, solution: Any, u: Any) -> None:
     pair, c = solution.problem.pair, solution.loading
     scale, over = (pair.Sy_min, "H/Sy_min") if pair.Sy_min < float("inf") else (1e6, "H [MPa]")
-    u = uncertainty
     rows = [
         (
-            f"{c.delta[i] / pair.R:.4g}",
-            f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
+            f"{c.delta[i] / pair.R:.4g}", f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
             f"{c.radius[i] * 1e3:.4g} ± {u.radius[i] * 1e3:.1g}",
             f"{c.sphere_share[i]:.4f} ± {u.sphere_share[i]:.1g}",
             f"{c.hardness[i] / scale:.3g} ± {u.hardness[i] / scale:.1g}",
         )
         for i in thinned(len(c.delta))
-    ]
+    ]  # fmt: skip
     show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     k = solution.counters
     console.print(

@@ -182,7 +182,7 @@ def _speeds(text: str) -> list[float]:
         allowed = "FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]"
         raise misused(f"{text!r}", key="--speed", allowed=allowed)
     if ":" in text:
-        return np.geomspace(*numbers, _SPEEDS_EXPORTED).tolist()
+        numbers = np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist()
     return numbers
 
 
