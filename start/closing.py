@@ -103,11 +103,10 @@ def close(
     bodies = np.where([*kept, *[False] * problem.error.count], z, 0.0)
     rest = tuple(m for m in best.mechanisms if m not in carried)
     values = {m.name: constants[m.name] for m in rest}
-    solver = fem.Accuracy.quick() if accuracy is None else accuracy
     found, tables = np.full(len(problem.cells), np.nan), []
     for k, press in enumerate(presses(problem, bodies, carried, constants, peaks), start=1):
         progress(f"finite elements, press {k}")
-        one = solved(press.problem, solver)
+        one = solved(press.problem, accuracy or fem.Accuracy.quick())
         if not one.solution.outcome.completed:
             raise InputError(str(one.solution.outcome), source=verdict.name, key="--solve",
                              allowed="a pair that can be solved")  # fmt: skip

@@ -154,22 +154,20 @@ def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float
 def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
     """Completed cases of metals that harden, or of those that do not, none of them coarse."""
     parts = published_parts(lambda name: name.startswith(_HARDENS) != perfectly_plastic)
-    found = [
+    return tuple(
         record for path in parts for record in read_curves(path)
         if record.unloadings and record.case.pair.perfectly_plastic == perfectly_plastic
         and math.isfinite(record.case.pair.Sy_min)
-    ]  # fmt: skip
-    return tuple(found)
+    )  # fmt: skip
 
 
 def _groups(pair: Pair) -> Array:
     """What a contact depends on, each about one wide over the published pairs."""
     ratio = min(max(pair.Sy_ratio, 1.0 / _UNEVEN_STRENGTHS), _UNEVEN_STRENGTHS)
-    groups = [
+    return np.array([
         math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
         (pair.elastic_share - 0.5) / 0.22, (pair.weaker.nu - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
-    ]  # fmt: skip
-    return np.array(groups)
+    ])  # fmt: skip
 
 
 def _rise(body: Material) -> float:

@@ -56,14 +56,10 @@ def write_hdf5(
     """Write histories and observables, a group a law, units in the names; `about`: for people."""
     stream = io.BytesIO()
     with h5py.File(stream, "w") as store:
-        for key, value in environment().items():
-            store.attrs[key] = value
-        for key, text in (about or {}).items():
-            store.attrs[key] = text
+        store.attrs.update({**environment(), **(about or {})})
         for law, trace in traces.items():
             group = store.create_group(law)
             for i, name in enumerate(HISTORY):
                 group.create_dataset(name, data=np.ascontiguousarray(trace.history[:, i]))
-            for name, value in impact_row(trace.impact).items():
-                group.attrs[name] = value
+            group.attrs.update(impact_row(trace.impact))
     write_file(path, stream.getvalue())

@@ -97,11 +97,9 @@ def checks(
             _repeats(setup), _deep(setup, scene, found), _onset(setup, scene, found),
             flow_checks(setup, scene, found, lacks), _either(scene, found),
             flat_checks(setup, scene, found, lacks), _walls(scene, found),
-            _gravity(setup, scene, found),
-            _friction(setup, scene, found), _rod(scene, found),
-            _two_radii(setup), _edge(setup, scene, found),
-            _second(setup, scene, found), _bodies(setup, law),
-            _mechanisms(setup, law, found),
+            _gravity(setup, scene, found), _friction(setup, scene, found), _rod(scene, found),
+            _two_radii(setup), _edge(setup, scene, found), _second(setup, scene, found),
+            _bodies(setup, law), _mechanisms(setup, law, found),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
