@@ -51,25 +51,19 @@ def export_dem(
     file: Annotated[
         Path, typer.Argument(help="The ball and the flat: a set-up of `impact`, or CASE.toml.")
     ],
-    speed: Annotated[
-        str,
-        typer.Option(
-            help="Speeds of the impacts: FIRST:LAST or several with commas [m/s]; otherwise those "
-            "of the file, or 0.1:10."
-        ),
-    ] = "",
+    speed: Annotated[str, typer.Option(
+        help="Speeds of the impacts: FIRST:LAST or several with commas [m/s]; otherwise those "
+        "of the file, or 0.1:10.",
+    )] = "",
     mass: Annotated[
         float | None, typer.Option(help="Of the ball [kg]; otherwise the file's.")
     ] = None,
-    law: Annotated[
-        str,
-        typer.Option(
-            help="A law, or a file of `dentscope case` (law.json) or `fit`; otherwise fitted, with "
-            "a flow curve hardening."
-        ),
-    ] = "",
+    law: Annotated[str, typer.Option(
+        help="A law, or a file of `dentscope case` (law.json) or `fit`; otherwise fitted, with "
+        "a flow curve hardening.",
+    )] = "",
     out: Annotated[Path, folder_option("Folder for the table and the inputs.")] = Path("build/dem"),
-) -> None:
+) -> None:  # fmt: skip
     """Give the contact laws of other programs parameters for a pair, by speed.
 
     LAMMPS, MuJoCo, YADE (inputs that run as they are), Drake, a table for others, and a formula of

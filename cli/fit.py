@@ -27,35 +27,23 @@ _PAGE = _ROOT / "docs" / "closed-form.md"
 
 def fit(
     context: typer.Context,
-    campaigns: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            help="Folders of runs or of parts; the published data set if there is one, else "
-            "build/campaign."
-        ),
-    ] = None,
+    campaigns: Annotated[list[Path] | None, typer.Argument(
+        help="Folders of runs or of parts; the published data set if there is one, else "
+        "build/campaign.",
+    )] = None,
     out: Annotated[Path, folder_option("Folder for the report.")] = Path("build/fit"),
-    publish: Annotated[
-        bool,
-        typer.Option(
-            "--publish", help="Also replace the coefficients that the laws use; a checkout."
-        ),
-    ] = False,
-    only: Annotated[
-        str,
-        typer.Option(
-            help="`hardening`: fit the law of metals that harden anew and leave the other "
-            "coefficients in use as they are."
-        ),
-    ] = "",
-    judge: Annotated[
-        Path | None,
-        typer.Option(
-            help="Only judge the law in use on the cases of this folder of parts that no fit "
-            "reads; with --publish also in docs/closed-form.md."
-        ),
-    ] = None,
-) -> int:
+    publish: Annotated[bool, typer.Option(
+        "--publish", help="Also replace the coefficients that the laws use; a checkout.",
+    )] = False,
+    only: Annotated[str, typer.Option(
+        help="`hardening`: fit the law of metals that harden anew and leave the other "
+        "coefficients in use as they are.",
+    )] = "",
+    judge: Annotated[Path | None, typer.Option(
+        help="Only judge the law in use on the cases of this folder of parts that no fit "
+        "reads; with --publish also in docs/closed-form.md.",
+    )] = None,
+) -> int:  # fmt: skip
     """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
     console = new_console()
     if publish:
