@@ -26,13 +26,10 @@ SECTIONS = (
 
 
 class Commands(TyperGroup):
-    """A group that shows its commands whole, and runs `alone` where none is given.
-
-    `sections`: titles and their commands; none: all under one title.
-    """
+    """A group that shows its commands whole, and runs `alone` where none is given."""
 
     alone: tuple[str, ...] = ("--help",)
-    sections: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    sections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # titles, and the commands under each
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Take `alone` for an empty command line."""

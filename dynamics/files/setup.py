@@ -174,8 +174,6 @@ class Setup:
             return found
         plain = self.plain(law)
         found = self.acting(plain).read(plain, found)
-        if self.second is None:
-            return found
         spin = self._own_spin(plain, found.rebound_spin_rad_s)
         return replace(found, rebound_spin_rad_s=float(spin))
 

@@ -76,12 +76,9 @@ class _Sizes(NamedTuple):
 
 @dataclass(frozen=True)
 class Band:
-    """Standard deviations of an impact's numbers, by part and field of `Impact`.
+    """Standard deviations of an impact's numbers, by part and field of `Impact`."""
 
-    `parts`: change of each field by one standard deviation of the part: keys of the file, `LAW`,
-    then `METALS`.
-    """
-
+    # change of each field by one standard deviation of the part: keys of the file, `LAW`, `METALS`
     parts: Mapping[str, Mapping[str, float]]
 
     def std(self, name: str) -> float:

@@ -23,11 +23,7 @@ class RigShape(NamedTuple):
 
 
 def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
-    """Return the outlines of a blow's bodies.
-
-    `place` and `height` (n,) are places along the surface that is struck and its height over the
-    one that was [m].
-    """
+    """Return a blow's outlines; `height` (n,) at `place` is over the surface that was there [m]."""
     body, target = setup.file.strikers[setup.striker], setup.file.target
     R, r = body.tip_radius_m.value, body.body_radius
     rod = body.shape == "rod"
