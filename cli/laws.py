@@ -100,9 +100,8 @@ def compare(
 
     laws = laws_named(law) if law else list(LAWS.values())
     found = compared(pair, laws, last=content.load.max_delta_over_R)
-    table_file, picture = out / "curves.csv", out / "curves.png"
-    write_file(table_file, csv_text(found.rows, header=LawRow._fields))
-    write_figure(found.plot(), picture, dpi=130)
+    table_file = write_file(out / "curves.csv", csv_text(found.rows, header=LawRow._fields))
+    picture = write_figure(found.plot(), out / "curves.png", dpi=130)
 
     console = new_console()
     console.print(found.finding)

@@ -64,8 +64,7 @@ def keys(
             if key.table != table:
                 table = key.table
                 typer.echo(f"\n{table}")
-            given = "needed" if not key.default else key.default
-            entry(key.name, f"{key.meaning} {key.allowed}; {given}.")
+            entry(key.name, f"{key.meaning} {key.allowed}; {key.default or 'needed'}.")
         typer.echo("")
 
 
