@@ -12,18 +12,9 @@ from ..choice.decide import WRONG_INPUT
 from ..choice.odds import OUTSIDE
 from ..findings import Verdict, WrongInput
 from ..rules import RULES
+from . import wording
 from .next_session import change_lines, next_lines
-from .wording import (
-    compared,
-    explanation,
-    interval,
-    joined,
-    miss_sentences,
-    parameter_name,
-    percent,
-    quantity,
-    title_of,
-)
+from .wording import explanation, interval, joined, parameter_name, percent, quantity, title_of
 
 # limit: probability from which one has a line [-]; half a per cent is printed as one
 STORY_LEAST = 0.005
@@ -218,7 +209,7 @@ def lines(v: Verdict) -> list[str]:
     seen = limit_rows(v) if v.limits and v.verdict == "adequate" else ()
     sections = {
         "Inputs": [a["message"] for a in v.audit],
-        "Where the simulation misses": [*miss_sentences(v.located, most=4), nowhere(v)],
+        "Where the simulation misses": [*wording.miss_sentences(v.located, most=4), nowhere(v)],
         "What explains it": [*explained, predicted(v)] if v.best.mechanisms else [],
         "Probability that it takes part": [f"{percent(x):>14}  {what}" for x, what in part],
         "Where the force law would have to change": changes,
@@ -252,7 +243,8 @@ def predicted(v: Verdict) -> str:
         return "no condition could be left out of the fit to try the prediction on"
     return (
         f"on conditions left out of the fit the miss goes from {i['held_out_baseline']:.1f} to "
-        f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: {compared(i)}"
+        f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: "
+        f"{wording.compared(i)}"
     )
 
 

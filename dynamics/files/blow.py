@@ -64,10 +64,9 @@ class Blow:
     def lacks(self) -> dict[str, dict[str, Lack]]:
         """What the set-up leaves open, by law and name, with the blow that it would be."""
         return {
-            law.name: lacks_of(self.setup, law, self[law.name])
-            for law in self.laws
+            law.name: lacks_of(self.setup, law, self[law.name]) for law in self.laws
             if law.name in self.sure and self[law.name].restitution > 0.0
-        }
+        }  # fmt: skip
 
     def checks(self) -> list[str]:
         """Return what speaks against the set-up by the first law, and restitutions above 1."""
@@ -75,9 +74,8 @@ class Blow:
         ended = [law for law in self.laws if self[law.name].outcome.completed]
         outer = (
             outside(law, self.setup.scene(law), self[law.name])
-            for law in ended
-            if law.name not in self.doubts
-        )
+            for law in ended if law.name not in self.doubts
+        )  # fmt: skip
         unsure = ", ".join(law.name for law in ended if law.name not in self.sure)
         above = {law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in ended}
         return [
@@ -96,19 +94,16 @@ class Blow:
                 without.setdefault((name, reason), []).append(law.name)
         return [
             f"{name} does not act by {', '.join(laws)}: {reason}"
-            for (name, reason), laws in without.items()
-            if self.laws[0].name not in laws
-        ]
+            for (name, reason), laws in without.items() if self.laws[0].name not in laws
+        ]  # fmt: skip
 
     @cached_property
     def sure(self) -> frozenset[str]:
         """Laws by which the blow came to an end, at a depth where their error is known."""
         return frozenset(
-            law.name
-            for law in self.laws
-            if self[law.name].outcome.completed
+            law.name for law in self.laws if self[law.name].outcome.completed
             and compared(law, self.setup.scene(law).pair, self[law.name].peak_depth_m)
-        )
+        )  # fmt: skip
 
     def rules(self) -> list[str]:
         """Return what rules the bands of restitution and dent, by the first law."""
@@ -175,10 +170,9 @@ class Blow:
             return (f"{label} [{unit}]" if unit != "-" else label, *cells)
 
         rows = [
-            row(label, key, scale, unit)
-            for label, key, scale, unit in SHOWN
+            row(label, key, scale, unit) for label, key, scale, unit in SHOWN
             if key == "restitution" or any(abs(values[key]) > 0.0 for values in shown.values())
-        ]
+        ]  # fmt: skip
         last = {row["law"]: row[PRESSURE] for row in self.rows}
         for law, values in shown.items():
             values[PRESSURE] = last[law]

@@ -194,11 +194,6 @@ class Setup:
         return replace(self, file=self.file.model_copy(update={"mechanisms": mechanisms}))
 
     @property
-    def striker(self) -> str:
-        """Name of the striker."""
-        return self.file.striker
-
-    @property
     def asked(self) -> Asked:
         """The mechanisms of the file."""
         return asked_in(self.file)
@@ -311,7 +306,7 @@ class Setup:
             return found
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]
         relative, both = found["rebound_speed_m_s"], plain.striker.mass
-        own = np.full(len(found), self.file.strikers[self.striker].mass_kg.value)
+        own = np.full(len(found), self.file.strikers[self.file.striker].mass_kg.value)
         before, after = found["approach_tangential_m_s"], found["tangential_rebound_m_s"]
         return Impacts({
             **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns},

@@ -220,7 +220,7 @@ def _moved(quantity: Quantity, by: float) -> float:
 def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
     """Yield the quantities that stand with a standard deviation, and where they stand."""
     file, content = setup.file, setup.content
-    name = setup.striker
+    name = setup.file.striker
     tables: dict[tuple[str, ...], Any] = {
         (): file, ("target",): file.target, ("strikers", name): file.strikers[name],
         ("friction",): file.friction, ("impact",): file.impact,

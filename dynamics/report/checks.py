@@ -69,14 +69,12 @@ def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
     if waves is not None:
         lacks["plate"] = Lack(FREE_PLATE, (waves,), "impact.support")
     return {
-        what: one
-        for what, one in lacks.items()
-        if all(end.outcome.completed for end in one.ends)
-        and any(
+        what: one for what, one in lacks.items()
+        if all(end.outcome.completed for end in one.ends) and any(
             sum(one.moved(name, found)) > _WORTH_A_LINE * getattr(found, name)
             for name in ("restitution", "residual_flat_m")
         )
-    }
+    }  # fmt: skip
 
 
 def checks(
@@ -203,9 +201,9 @@ def _straight(scene: Scene) -> bool:
 
 def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     straight, mu = _straight(scene), scene.friction.mu
-    inertia = setup.file.strikers[setup.striker].inertia_kg_m2
+    inertia = setup.file.strikers[setup.file.striker].inertia_kg_m2
     if straight and inertia is not None:
-        key = f"strikers.{setup.striker}.inertia_kg_m2"
+        key = f"strikers.{setup.file.striker}.inertia_kg_m2"
         yield f"{key}, {inertia.value:g}, does nothing in a straight blow: nothing turns"
     if straight and mu > 0.0:
         yield (
@@ -252,7 +250,7 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
 
 
 def _two_radii(setup: Setup) -> Iterator[str]:
-    ball = setup.file.strikers[setup.striker]
+    ball = setup.file.strikers[setup.file.striker]
     if ball.shape == "sphere" and ball.radius_m is not None:
         tip, body = ball.tip_radius_m, ball.radius_m
         if abs(tip.value - body.value) > max(tip.std, body.std):
@@ -287,7 +285,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     second = setup.second
     if second is None:
         return
-    ball = setup.file.strikers[setup.striker]
+    ball = setup.file.strikers[setup.file.striker]
     yield (
         f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
         f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other, "
@@ -345,7 +343,7 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
         if not (flows or body.rigid or body.strength or file.target.law == "elastic"):
             yield f"{key}: {unlisted(body.material)}without Sy_Pa it stays elastic"
-    name, second = setup.striker, file.target
+    name, second = setup.file.striker, file.target
     ball = file.strikers[name]
     yield from _mass(
         f"strikers.{name}", ball.mass_kg, ball.body_radius, ball.density_kg_m3, ball.length

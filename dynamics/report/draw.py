@@ -66,10 +66,9 @@ def draw_sweep(
     place = tuple(slice(None) if name == across else 0 for name in swept)
     rows = np.arange(math.prod(lengths)).reshape(lengths)[place]
     shown = [
-        name
-        for name in SWEPT
+        name for name in SWEPT
         if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
-    ]
+    ]  # fmt: skip
     made, axes = panels(len(shown))
     first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
@@ -114,10 +113,9 @@ def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Imp
         )
 
     return [
-        name
-        for axis, (name, values) in enumerate(swept.items())
+        name for axis, (name, values) in enumerate(swept.items())
         if len(set(values)) > 1 and idle(axis)
-    ]
+    ]  # fmt: skip
 
 
 def _by_ratio(values: Sequence[float]) -> bool:

@@ -83,7 +83,8 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
         axis.fill(*(scale * outline).T, facecolor=colour, edgecolor="0.35", lw=0.8)
     for surface in left[:1]:
         axis.hlines(0.0, -scale * surface.radius, scale * surface.radius, color="C3", lw=2.5)
-    w, body = scale * rig.window, setup.file.strikers[setup.striker]
+    w, name = scale * rig.window, setup.file.striker
+    body = setup.file.strikers[name]
     approach = setup.scene(blow.laws[0]).approach
     direction = np.array([approach.tangential, -approach.speed])
     direction *= 0.5 * w / np.linalg.norm(direction)
@@ -92,7 +93,7 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
     speed = math.hypot(approach.tangential, approach.speed)
     size = f"R {_length(body.tip_radius_m.value)}"
     size = size if body.shape == "sphere" else f"tip {size}, {_length(body.length)}"
-    told = ["to scale", f"{setup.striker}: {size}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s"]
+    told = ["to scale", f"{name}: {size}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s"]
     second = setup.second
     if second is not None:
         kind = "sphere" if second.radius > 0.0 else "seat"
@@ -115,7 +116,7 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
 
 def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> None:
     names = {"flat": "flat" if blow.setup.second is None else "what is struck",
-             "sphere": blow.setup.striker}  # fmt: skip
+             "sphere": blow.setup.file.striker}  # fmt: skip
     scale, unit = _scale(2.0 * left[0].radius)
     for surface, colour in zip(left, ("C0", "C1"), strict=False):
         name = f"{names[surface.body]}: {_length(surface.depth)} deep"

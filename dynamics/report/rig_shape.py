@@ -24,7 +24,7 @@ class RigShape(NamedTuple):
 
 def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
     """Return a blow's outlines; `height` (n,) at `place` is over the surface that was there [m]."""
-    body, target = setup.file.strikers[setup.striker], setup.file.target
+    body, target = setup.file.strikers[setup.file.striker], setup.file.target
     R, r = body.tip_radius_m.value, body.body_radius
     rod = body.shape == "rod"
     window = 2.6 * max(R, 2.0 * r if rod else r)
