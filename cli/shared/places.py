@@ -60,7 +60,7 @@ def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
 
 
 def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
-    """Refuse what does nothing `option`: the parameters `names` of the command's function."""
+    """Refuse parameters `names` of the command that do nothing `option`: "beside --new"."""
     for parameter in context.command.params:
         source = context.get_parameter_source(parameter.name or "")
         if parameter.name in names and source is not None and source.name == "COMMANDLINE":

@@ -80,7 +80,7 @@ def _columns() -> int:
 
 
 def wrapped(text: str, indent: int = 0, further: int = 0) -> str:
-    """Return a text in lines of the terminal's width, all but the first `further`; names whole."""
+    """Return a text, names whole, in lines of a terminal, all but the first indented `further`."""
     lines = textwrap.wrap(
         text, _columns(), initial_indent=" " * indent, subsequent_indent=" " * (indent + further),
         break_long_words=False, break_on_hyphens=False,
