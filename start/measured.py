@@ -150,7 +150,11 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     dented = flat > 0.0 and sphere <= RULES.ball_keeps * (sphere + flat)
     by_contact, by_rim = (brinell(load, 2.0 * R, d) if dented else math.nan for d in (contact, rim))
     back = _returned(solution, u)
-    return Dent(u.depth, load, sphere, flat, contact, rim, height, by_contact, by_rim, back)
+    return Dent(
+        depth=u.depth, load=load, left_sphere=sphere, left_flat=flat,
+        contact_diameter=contact, rim_diameter=rim, rim_height=height,
+        brinell_by_contact=by_contact, brinell_by_rim=by_rim, energy_returned=back,
+    )  # fmt: skip
 
 
 def _crest(r: Array, z: Array, top: int) -> tuple[float, float]:
