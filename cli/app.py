@@ -37,11 +37,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-
 # typer ships its own copy of click in newer versions and uses the installed one in older ones;
 # the base class of its usage errors is reached through a name that both export.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
-
 
 for _part in (campaign, export, laws, recordings, reduce):
     app.add_typer(_part.app, name=_part.__name__.rpartition(".")[2])

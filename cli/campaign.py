@@ -88,9 +88,9 @@ def run(
         done = step.status.done
         if step.done and done in _PICTURED:
             many = "the first case" if done == 1 else f"{done} cases"
+            told = f"picture of {many}, of {step.status.designed}"
             for picture in _draw(chosen, out):
-                told = f"picture of {many}, of {step.status.designed}: {picture}"
-                progress.console.print(told)
+                progress.console.print(f"{told}: {picture}")
 
     try:
         with in_use(out / "cases") as shared, progress.bar:
@@ -100,15 +100,9 @@ def run(
                     "`--part 2/2` share them", highlight=False,
                 )  # fmt: skip
             after = run_design(
-                chosen,
-                out,
-                executor=executor,
-                time_limit_s=60.0 * case_minutes,
-                again=again,
-                share=share,
-                until=until,
-                report=ended,
-            )
+                chosen, out, executor=executor, time_limit_s=60.0 * case_minutes, again=again,
+                share=share, until=until, report=ended,
+            )  # fmt: skip
         code = 0 if after.done == after.designed else EXIT_NOT_CONVERGED
     except STOPS as stop:
         code, after = stopped(stop), status_of(chosen, store)
@@ -189,14 +183,8 @@ def _tell_published(published: list[Any]) -> None:
         typer.echo(f"  {one.design:12} {one.done:4} done {one.failed:3} failed{old}")
 
 
-for command in (
-    campaign_data.show,
-    campaign_data.refine,
-    campaign_data.export,
-    campaign_data.publish,
-    campaign_data.repair,
-):
-    app.command()(command)
+for command in ("show", "refine", "export", "publish", "repair"):
+    app.command()(getattr(campaign_data, command))
 studies.add(app, "campaign reproduction")
 
 
@@ -220,8 +208,7 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
         return
     store, keys = Store(out), set(distinct_cases(design))
     tell(judged([s for s in store.summaries() if s.id in keys and s.status == "done"]))
-    records = _done(design, store)
-    found = largest_difference(records, read_published(PUBLISHED))
+    found = largest_difference(_done(design, store), read_published(PUBLISHED))
     if found.cases:
         finer = "" if found.same else ", which were solved at another resolution"
         typer.echo(

@@ -57,8 +57,7 @@ def show(
     console.print(f"{record.case.name}: {record.status} {record.message}".rstrip())
     console.print(f"{source}, {record.case.id[:12]}", soft_wrap=True)
     c = record.curve
-    elastic = pair.Sy_min == float("inf")
-    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
+    scale, over = (pair.Sy_min, "H/Sy_min") if pair.Sy_min < float("inf") else (1e6, "H [MPa]")
     rows = [
         (
             f"{c['delta'][i] / pair.R:.4g}", f"{c['force'][i]:.4g}", f"{c['radius'][i] * 1e3:.4g}",
@@ -117,13 +116,9 @@ def refine(
         return EXIT_NOT_CONVERGED
     found = largest_difference([record], [other])
     steps = steps_not_in(record.curve, other.curve)
-    for name, own, shown, far in zip(
-        ("F", "a", "delta_s*"),
-        (record.quality.force_step, record.quality.radius_step, record.quality.share_step),
-        steps,
-        (found.force, found.radius, found.share),
-        strict=True,
-    ):
+    before = (record.quality.force_step, record.quality.radius_step, record.quality.share_step)
+    apart = (found.force, found.radius, found.share)
+    for name, own, shown, far in zip(("F", "a", "delta_s*"), before, steps, apart, strict=True):
         typer.echo(
             f"{name:9} largest step {own:.2%}, of it not in the finer solve {shown:.2%}; "
             f"largest difference {far:.2%}"

@@ -12,28 +12,19 @@ class Progress:
     """A bar on a terminal, a line a case in a log; both with the time that is left."""
 
     def __init__(self, forecast: Any, total: int) -> None:
+        from rich import progress
         from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeElapsedColumn,
-        )
 
         self.cpu_s = 0.0
         self.forecast = forecast
         self.started = time.monotonic()
         self.console = Console()
-        self.bar = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TimeElapsedColumn(),
-            TextColumn("{task.fields[left]} left"),
-            console=self.console,
-            disable=not self.console.is_terminal,
-        )
+        self.bar = progress.Progress(
+            progress.TextColumn("{task.description}"), progress.BarColumn(),
+            progress.MofNCompleteColumn(), progress.TimeElapsedColumn(),
+            progress.TextColumn("{task.fields[left]} left"),
+            console=self.console, disable=not self.console.is_terminal,
+        )  # fmt: skip
         self.task = self.bar.add_task("cases", total=total, left=duration(forecast.left_s()))
 
     def step(self, step: Any) -> None:

@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     from ..start.measured import MeasuredContact
 
 _COLUMNS = (
-    "force_N",
-    "contact_radius_m",
-    "contact_radius_last_node_m",
-    "sphere_share",
-    "hardness_Pa",
+    "force_N", "contact_radius_m", "contact_radius_last_node_m", "sphere_share", "hardness_Pa",
     "hardness_over_Symin",
-)
+)  # fmt: skip
+_FIELDS = {
+    "points": "m", "quads": "1", "displacement": "m", "von_mises": "Pa", "plastic_strain": "1",
+    "mean_stress": "Pa", "stress": "Pa",
+}  # fmt: skip
+"""Units of the fields."""
 
 
 def case(
@@ -172,43 +173,26 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
             part = group.create_group(f"fields-{snapshot.depth:.6g}")
             part.attrs["depth"] = snapshot.depth
             part.attrs["n_sphere_quads"] = snapshot.n_sphere_quads
+            packed = {"compression": "gzip", "shuffle": True, "fletcher32": True}
             for key, unit in _FIELDS.items():
-                values = getattr(snapshot, key)
-                data = part.create_dataset(
-                    key, data=values, compression="gzip", shuffle=True, fletcher32=True
-                )
+                data = part.create_dataset(key, data=getattr(snapshot, key), **packed)
                 data.attrs["unit"] = unit
 
     return write_file(path, case_image(case, replace(solution, snapshots=()), also=add))
 
 
-_FIELDS = {
-    "points": "m",
-    "quads": "1",
-    "displacement": "m",
-    "von_mises": "Pa",
-    "plastic_strain": "1",
-    "mean_stress": "Pa",
-    "stress": "Pa",
-}
-
-
-def _show(console: Any, solution: Any, uncertainty: Any) -> None:
+def _show(console: Any, solution: Any, u: Any) -> None:
     pair, c = solution.problem.pair, solution.loading
-    share = c.sphere_share
-    elastic = pair.Sy_min == float("inf")
-    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
-    u = uncertainty
+    scale, over = (pair.Sy_min, "H/Sy_min") if pair.Sy_min < float("inf") else (1e6, "H [MPa]")
     rows = [
         (
-            f"{c.delta[i] / pair.R:.4g}",
-            f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
+            f"{c.delta[i] / pair.R:.4g}", f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
             f"{c.radius[i] * 1e3:.4g} ± {u.radius[i] * 1e3:.1g}",
-            f"{share[i]:.4f} ± {u.sphere_share[i]:.1g}",
+            f"{c.sphere_share[i]:.4f} ± {u.sphere_share[i]:.1g}",
             f"{c.hardness[i] / scale:.3g} ± {u.hardness[i] / scale:.1g}",
         )
         for i in thinned(len(c.delta))
-    ]
+    ]  # fmt: skip
     show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     k = solution.counters
     console.print(

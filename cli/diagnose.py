@@ -18,7 +18,6 @@ from .shared.terminal import say, tell_first_use
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
 
-
 _OUT = Path("build/diagnose")
 
 
@@ -29,13 +28,10 @@ def diagnose(
     ] = None,
     out: Annotated[Path | None, folder_option("Folder for verdict.json and report.html.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same answer.")] = 0,
-    law: Annotated[
-        Literal["fitted", "table"] | None,
-        typer.Option(
-            help="Fitted, or the own pair solved; else solved if it has a flow curve. No other: "
-            "how far off it is, is not known."
-        ),
-    ] = None,
+    law: Annotated[Literal["fitted", "table"] | None, typer.Option(
+        help="Fitted, or the own pair solved; else solved if it has a flow curve. No other: "
+        "how far off it is, is not known.",
+    )] = None,
     cautious: Annotated[
         bool, typer.Option("--cautious", help="Say only what has four fifths of the probability.")
     ] = False,
@@ -50,7 +46,7 @@ def diagnose(
     solve: Annotated[
         bool, typer.Option("--solve", help="A named hardening or rate by finite elements too.")
     ] = False,
-) -> None:
+) -> None:  # fmt: skip
     """Compare recordings with the simulation and say what physics is missing, if any.
 
     Writes verdict.json (for programs) and report.html (for people) into OUT, by default

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import typer
 
@@ -20,19 +20,14 @@ EXIT_ENVIRONMENT = 1
 """Exit code for an environment in which the solver cannot run."""
 
 
-@dataclass(frozen=True, slots=True)
-class EnvironmentFinding:
-    """One thing looked at.
-
-    `name`, `state`: what was looked at and what was found; `fine`: whether it works; `needed`:
-    whether the solver cannot run without it; `remedy`: what to do when it does not work.
-    """
+class EnvironmentFinding(NamedTuple):
+    """One thing looked at."""
 
     name: str
-    state: str
+    state: str  # what was found
     fine: bool = True
-    needed: bool = False
-    remedy: str = ""
+    needed: bool = False  # the solver cannot run without it
+    remedy: str = ""  # what to do when it does not work
 
 
 def doctor() -> int:
@@ -43,9 +38,7 @@ def doctor() -> int:
         typer.echo(f"{mark:8} {finding.name:20} {finding.state}")
         if not finding.fine:
             typer.echo(f"{'':8} {'':20} -> {finding.remedy}")
-    if any(finding.needed and not finding.fine for finding in findings):
-        return EXIT_ENVIRONMENT
-    return 0
+    return EXIT_ENVIRONMENT if any(one.needed and not one.fine for one in findings) else 0
 
 
 def examine() -> tuple[EnvironmentFinding, ...]:
@@ -53,8 +46,7 @@ def examine() -> tuple[EnvironmentFinding, ...]:
     from ..core.provenance import environment
     from ..core.rendering import offscreen_available
 
-    versions = environment()
-    shown = ", ".join(f"{name} {version}" for name, version in versions.items())
+    shown = ", ".join(f"{name} {version}" for name, version in environment().items())
     renders = offscreen_available()
     return (
         EnvironmentFinding("versions", shown),
@@ -63,13 +55,11 @@ def examine() -> tuple[EnvironmentFinding, ...]:
         EnvironmentFinding("workshop", "here" if studies.present() else studies.WHERE),
         _gmsh(),
         EnvironmentFinding(
-            "off-screen pictures",
-            "pyvista renders" if renders else "no pictures in space",
-            fine=renders,
-            remedy=_REMEDY,
+            "off-screen pictures", "pyvista renders" if renders else "no pictures in space",
+            fine=renders, remedy=_REMEDY,
         ),
         _compiled_code(),
-    )
+    )  # fmt: skip
 
 
 def _gmsh() -> EnvironmentFinding:

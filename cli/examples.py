@@ -11,7 +11,6 @@ from ..core.output import write_file
 from .shared.places import folder_option
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
-"""Where they lie."""
 
 
 def examples(

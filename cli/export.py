@@ -51,25 +51,19 @@ def export_dem(
     file: Annotated[
         Path, typer.Argument(help="The ball and the flat: a set-up of `impact`, or CASE.toml.")
     ],
-    speed: Annotated[
-        str,
-        typer.Option(
-            help="Speeds of the impacts: FIRST:LAST or several with commas [m/s]; otherwise those "
-            "of the file, or 0.1:10."
-        ),
-    ] = "",
+    speed: Annotated[str, typer.Option(
+        help="Speeds of the impacts: FIRST:LAST or several with commas [m/s]; otherwise those "
+        "of the file, or 0.1:10.",
+    )] = "",
     mass: Annotated[
         float | None, typer.Option(help="Of the ball [kg]; otherwise the file's.")
     ] = None,
-    law: Annotated[
-        str,
-        typer.Option(
-            help="A law, or a file of `dentscope case` (law.json) or `fit`; otherwise fitted, with "
-            "a flow curve hardening."
-        ),
-    ] = "",
+    law: Annotated[str, typer.Option(
+        help="A law, or a file of `dentscope case` (law.json) or `fit`; otherwise fitted, with "
+        "a flow curve hardening.",
+    )] = "",
     out: Annotated[Path, folder_option("Folder for the table and the inputs.")] = Path("build/dem"),
-) -> None:
+) -> None:  # fmt: skip
     """Give the contact laws of other programs parameters for a pair, by speed.
 
     LAMMPS, MuJoCo, YADE (inputs that run as they are), Drake, a table for others, and a formula of
@@ -116,13 +110,9 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     files = {"dem.csv": csv_text(cells, header=HEAD)}
     if ball.second is None or ball.second.radius > 0.0:
         files["lammps.in"] = lammps_lines(
-            rows,
-            ball.pair,
-            mass=ball.mass,
-            friction=ball.friction,
-            of_balls=between,
+            rows, ball.pair, mass=ball.mass, friction=ball.friction, of_balls=between,
             second=ball.second,
-        )
+        )  # fmt: skip
     for name, text in (files | _fragments(ball, chosen, rows)).items():
         shown.print(f"written: {write_file(out / name, text)}")
 
@@ -185,9 +175,9 @@ def _speeds(text: str) -> list[float]:
     if not numbers or any(map(SPEEDS.wanted, numbers)) or (":" in text and not pair):
         allowed = "FIRST:LAST, the lower first, or numbers with commas, up to 20000 [m/s]"
         raise misused(f"{text!r}", key="--speed", allowed=allowed)
-    return (
-        np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist() if ":" in text else numbers
-    )
+    if ":" in text:
+        numbers = np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist()
+    return numbers
 
 
 def _misses(rows: list[ExportedRow]) -> tuple[list[str], list[list[str]]]:

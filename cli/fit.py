@@ -27,35 +27,23 @@ _PAGE = _ROOT / "docs" / "closed-form.md"
 
 def fit(
     context: typer.Context,
-    campaigns: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            help="Folders of runs or of parts; the published data set if there is one, else "
-            "build/campaign."
-        ),
-    ] = None,
+    campaigns: Annotated[list[Path] | None, typer.Argument(
+        help="Folders of runs or of parts; the published data set if there is one, else "
+        "build/campaign.",
+    )] = None,
     out: Annotated[Path, folder_option("Folder for the report.")] = Path("build/fit"),
-    publish: Annotated[
-        bool,
-        typer.Option(
-            "--publish", help="Also replace the coefficients that the laws use; a checkout."
-        ),
-    ] = False,
-    only: Annotated[
-        str,
-        typer.Option(
-            help="`hardening`: fit the law of metals that harden anew and leave the other "
-            "coefficients in use as they are."
-        ),
-    ] = "",
-    judge: Annotated[
-        Path | None,
-        typer.Option(
-            help="Only judge the law in use on the cases of this folder of parts that no fit "
-            "reads; with --publish also in docs/closed-form.md."
-        ),
-    ] = None,
-) -> int:
+    publish: Annotated[bool, typer.Option(
+        "--publish", help="Also replace the coefficients that the laws use; a checkout.",
+    )] = False,
+    only: Annotated[str, typer.Option(
+        help="`hardening`: fit the law of metals that harden anew and leave the other "
+        "coefficients in use as they are.",
+    )] = "",
+    judge: Annotated[Path | None, typer.Option(
+        help="Only judge the law in use on the cases of this folder of parts that no fit "
+        "reads; with --publish also in docs/closed-form.md.",
+    )] = None,
+) -> int:  # fmt: skip
     """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
     console = new_console()
     if publish:
@@ -70,30 +58,26 @@ def fit(
 
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
+    from ..fitting import report
     from ..fitting.coefficients import write_coefficients
     from ..fitting.refit import refit
-    from ..fitting.report import (
-        coefficient_rows,
-        error_rows,
-        stated_within,
-        uncertainty_rows,
-        write_report,
-    )
 
     found = refit(files, progress=console.print)
     result, content = found.laws, found.content
     write_coefficients(content, out / "fitted.json")
-    _show(console, coefficient_rows(content))
+    _show(console, report.coefficient_rows(content))
     columns = [
         ("compact, left out", result.compact.held_out),
         ("fitted, left out", result.fitted.held_out),
         *((f"{name}, validation", errors) for name, errors in found.validation),
     ]
-    _show(console, error_rows(columns))
-    _show(console, uncertainty_rows(stated_within(content)))
+    _show(console, report.error_rows(columns))
+    _show(console, report.uncertainty_rows(report.stated_within(content)))
     if found.hardens:
         _show_hardening(console, content)
-    page = write_report(result, content, found.table, found.turns, out, validation=found.validation)
+    page = report.write_report(
+        result, content, found.table, found.turns, out, validation=found.validation
+    )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
         _publish(content, out)
@@ -118,8 +102,7 @@ def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish:
     if not refit_hardening(content, read_sources(files), progress=console.print):
         raise InputError("no metals that harden", key="campaigns", allowed="design hardening")
     _show_hardening(console, content)
-    written = write_coefficients(content, out / "fitted.json")
-    console.print(f"coefficients: {written}")
+    console.print(f"coefficients: {write_coefficients(content, out / 'fitted.json')}")
     if publish:
         _publish(content, None)
         console.print("the law of metals that harden now uses these coefficients")

@@ -59,9 +59,8 @@ def inverse(
     for row in rows:
         for line in row.inferred.objections:
             console.print(f"  {row.name}: {line}", soft_wrap=True)
-    written = out / f"{file.stem}-inverse.csv"
     cells = [_csv_row(row) for row in rows]
-    write_csv(written, cells, header=cells[0])
+    written = write_csv(out / f"{file.stem}-inverse.csv", cells, header=cells[0])
     console.print(f"written: {written}", soft_wrap=True)
 
 

@@ -16,7 +16,6 @@ from .shared.terminal import entry, new_console, say, show_table, wrapped
 if TYPE_CHECKING:
     from ..models.base import ContactLaw
 
-
 _YIELDS = {"flattening": "sphere", "indentation": "flat", "either": "either"}
 
 
@@ -70,16 +69,11 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
     """One law: source, equations, range, what was read, and what it breaks."""
     [chosen] = laws_named([law], key="LAW")
     lines = {
-        "law": chosen.name,
-        "law of": chosen.title,
-        "source": chosen.source,
-        "equations": chosen.equations,
-        "made for": chosen.regime,
-        "range": chosen.domain.note or "not stated",
-        "standing": chosen.standing.told,
-        "read": chosen.read,
-        "described in": _described_in(chosen),
-    }
+        "law": chosen.name, "law of": chosen.title, "source": chosen.source,
+        "equations": chosen.equations, "made for": chosen.regime,
+        "range": chosen.domain.note or "not stated", "standing": chosen.standing.told,
+        "read": chosen.read, "described in": _described_in(chosen),
+    }  # fmt: skip
     for key, text in lines.items():
         if text:
             entry(key, text)
@@ -106,9 +100,8 @@ def compare(
 
     laws = laws_named(law) if law else list(LAWS.values())
     found = compared(pair, laws, last=content.load.max_delta_over_R)
-    table_file, picture = out / "curves.csv", out / "curves.png"
-    write_file(table_file, csv_text(found.rows, header=LawRow._fields))
-    write_figure(found.plot(), picture, dpi=130)
+    table_file = write_file(out / "curves.csv", csv_text(found.rows, header=LawRow._fields))
+    picture = write_figure(found.plot(), out / "curves.png", dpi=130)
 
     console = new_console()
     console.print(found.finding)

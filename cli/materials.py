@@ -20,13 +20,10 @@ _LISTED = ("E_Pa", "Sy_Pa", "hardness_Pa")
 
 
 def show_materials(
-    name: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME", help="A name, or words: 1.4301, S355J2, 'hard brass'. Left out: all."
-        ),
-    ] = "",
-) -> None:
+    name: Annotated[str, typer.Argument(
+        metavar="NAME", help="A name, or words: 1.4301, S355J2, 'hard brass'. Left out: all.",
+    )] = "",
+) -> None:  # fmt: skip
     """List metals and hard materials, or show one with spread, sources and its line of a file."""
     found = [one for one in materials().values() if one.has(name)]
     if name in materials() or len(found) == 1:

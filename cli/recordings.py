@@ -101,8 +101,7 @@ def new(
     from ..recordings.template import write_template
 
     if sheet is not None:
-        words = column or []
-        _new_from(sheet, folder, words, of_book=of_book, sphere=sphere, dry_run=dry_run)
+        _new_from(sheet, folder, column or [], of_book=of_book, sphere=sphere, dry_run=dry_run)
         return
     if column or dry_run or of_book:
         told = "--column, --dry-run and --sheet are of a sheet"

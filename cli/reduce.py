@@ -76,11 +76,9 @@ def _command(name: str) -> Any:
 
     kind = load_kind(name)
 
-    def run(**given: Any) -> None:
-        files, listed = given.pop("files"), given.pop("listed")
-        into, out = given.pop("into"), given.pop("out")
+    def run(context: Any, files: Any, listed: Any, into: Any, out: Any, **given: Any) -> None:
         # a default may stand for what the file says: an option counts where it was typed
-        source = given.pop("context").get_parameter_source
+        source = context.get_parameter_source
         typed = {k: v for k, v in given.items() if source(k).name != "DEFAULT"}
         row = {k: typed.pop(k) for k in Row.model_fields if k in typed}
         jobs = jobs_of(kind, files or [], listed, typed)

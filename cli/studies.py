@@ -14,16 +14,9 @@ import typer
 from ..core.errors import InputError
 
 WHERE = "not installed: get a checkout or the source archive of dentscope, `make install` there"
-"""Where the workshop is to be had."""
 
-COMMANDS = {
-    "figures": "figures",
-    "verify": "verify",
-    "proof": "proof",
-    "challenge": "challenge",
-    "campaign reproduction": "campaign",
-}
-"""What the user types after `dentscope`, and the module of the workshop that holds it."""
+COMMANDS = ("figures", "verify", "proof", "challenge", "campaign reproduction")
+"""What the user types after `dentscope`; the first word is the module that holds it."""
 
 _ANYTHING = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -34,10 +27,7 @@ def present() -> bool:
 
 
 def needed_for(what: str) -> None:
-    """Pass where the workshop is present.
-
-    Elsewhere refuse the command `what` and say where to get it.
-    """
+    """Refuse the command `what` where the workshop is not present, and say where to get it."""
     if not present():
         raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
 
@@ -49,7 +39,7 @@ def add(group: typer.Typer, name: str) -> None:
         hidden = group.command(last, hidden=True, add_help_option=False, context_settings=_ANYTHING)
         hidden(lambda: needed_for(f"`dentscope {name}`"))
         return
-    part = import_module(f"..studies.commands.{COMMANDS[name]}", __package__)
+    part = import_module(f"..studies.commands.{name.split()[0]}", __package__)
     if hasattr(part, "app"):
         group.add_typer(part.app, name=last)
     else:

@@ -90,7 +90,7 @@ def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
 
 def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     setup = setup_of(dict(content), source=str(file))
-    name = setup.striker
+    name = setup.file.striker
     ball = setup.file.strikers[name]
     if ball.shape != "sphere":
         raise InputError(

@@ -20,7 +20,6 @@ from ..core.rig import FrictionTable, MaterialTable, value_of
 if TYPE_CHECKING:
     from ..fem import Accuracy, ContactProblem
 
-
 Level = Literal["production", "quick", "smoke"]
 """How finely a pair is solved; smoke is coarse, for a first look."""
 
@@ -133,8 +132,7 @@ def metal_keys(body: str) -> set[str]:
 def read_flow_curve(path: Path) -> FlowCurve:
     """Read a table of true stress over plastic strain, from 0 on: plastic_strain and stress_Pa.
 
-    The second may be called true_stress_Pa, as in a recording set. Every mistake is a line with its
-    row.
+    The second may be called true_stress_Pa, as in a set. Every mistake is a line with its row.
     """
     from ..core.inputs.flow_curve import read_flow_curve as read_measured
 
@@ -194,10 +192,7 @@ def read_case(file: Path) -> tuple[ContactProblem, Accuracy]:
 def case_of(
     pair: Pair, load: LoadTable, friction: float, *, level: str, source: str
 ) -> tuple[ContactProblem, Accuracy]:
-    """Return the solver's problem and accuracy of a pair and how it is pressed.
-
-    A depth outside what can be solved and an unknown level are refused.
-    """
+    """Return problem and accuracy of a pair; refuse a depth beyond the solver, an unknown level."""
     # loaded after the file is read: a mistake in it is told at once
     from .. import fem
 

@@ -56,16 +56,11 @@ class Compared(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Closed:
-    """What finite elements with the inferred constants say of the recordings.
+    """What finite elements with the inferred constants say of the recordings."""
 
-    - `constants`: mechanism to its numbers, from the conditions that were kept in.
-    - `rows`: every number of the conditions that were solved.
-    - `tables`: the solved pairs, usable as contact laws where no rate acts.
-    """
-
-    constants: Constants
-    rows: tuple[Compared, ...]
-    tables: tuple[PairTable, ...]
+    constants: Constants  # by mechanism, from the conditions that were kept in
+    rows: tuple[Compared, ...]  # every number of the conditions that were solved
+    tables: tuple[PairTable, ...]  # the solved pairs, contact laws where no rate acts
 
     def miss(self, which: str, *, kept_out: bool) -> float:
         """Rms distance of a simulation from the recordings, in their standard errors."""
@@ -108,11 +103,10 @@ def close(
     bodies = np.where([*kept, *[False] * problem.error.count], z, 0.0)
     rest = tuple(m for m in best.mechanisms if m not in carried)
     values = {m.name: constants[m.name] for m in rest}
-    solver = fem.Accuracy.quick() if accuracy is None else accuracy
     found, tables = np.full(len(problem.cells), np.nan), []
     for k, press in enumerate(presses(problem, bodies, carried, constants, peaks), start=1):
         progress(f"finite elements, press {k}")
-        one = solved(press.problem, solver)
+        one = solved(press.problem, accuracy or fem.Accuracy.quick())
         if not one.solution.outcome.completed:
             raise InputError(str(one.solution.outcome), source=verdict.name, key="--solve",
                              allowed="a pair that can be solved")  # fmt: skip

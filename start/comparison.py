@@ -227,17 +227,14 @@ def _best(
 def _elastic(departures: dict[str, Departure]) -> tuple[str, ...]:
     """Hertz's law, of which all others are copies; ours where finite strain is 1 % or more."""
     ours = {"hertz": 0, "fitted": 1}  # of those that are as near
-    near = sorted(
-        departures, key=lambda name: (round(departures[name].worst, 2), ours.get(name, 2))
-    )
+    near = sorted(departures, key=lambda one: (round(departures[one].worst, 2), ours.get(one, 2)))
     return tuple(near[:1])
 
 
 def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, ...]:
     deepest = last * pair.R
-    depth = np.geomspace(
-        min(0.3 * pair.first_yield * pair.R, 1e-2 * deepest), deepest, CURVE_POINTS
-    )
+    first = min(0.3 * pair.first_yield * pair.R, 1e-2 * deepest)
+    depth = np.geomspace(first, deepest, CURVE_POINTS)
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
     rows: list[LawRow] = []
     for law in laws:

@@ -52,15 +52,12 @@ _HARDENS = ("hardening", "validation-hardening")
 
 
 class Departure(NamedTuple):
-    """How far a law is from finite elements: largest |ln(law/finite elements)| of each.
-
-    `at` are the approaches over R at which they are.
-    """
+    """How far a law is from finite elements: largest |ln(law/finite elements)| of each."""
 
     force: float
     dent: float
     restitution: float
-    at: tuple[float, float, float] = (math.nan, math.nan, math.nan)
+    at: tuple[float, float, float] = (math.nan, math.nan, math.nan)  # their approaches over R
 
     @property
     def worst(self) -> float:
@@ -157,22 +154,20 @@ def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float
 def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
     """Completed cases of metals that harden, or of those that do not, none of them coarse."""
     parts = published_parts(lambda name: name.startswith(_HARDENS) != perfectly_plastic)
-    found = [
+    return tuple(
         record for path in parts for record in read_curves(path)
         if record.unloadings and record.case.pair.perfectly_plastic == perfectly_plastic
         and math.isfinite(record.case.pair.Sy_min)
-    ]  # fmt: skip
-    return tuple(found)
+    )  # fmt: skip
 
 
 def _groups(pair: Pair) -> Array:
     """What a contact depends on, each about one wide over the published pairs."""
     ratio = min(max(pair.Sy_ratio, 1.0 / _UNEVEN_STRENGTHS), _UNEVEN_STRENGTHS)
-    groups = [
+    return np.array([
         math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
         (pair.elastic_share - 0.5) / 0.22, (pair.weaker.nu - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
-    ]  # fmt: skip
-    return np.array(groups)
+    ])  # fmt: skip
 
 
 def _rise(body: Material) -> float:
@@ -195,9 +190,8 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
         order = np.argsort(delta)
         returned = float(np.trapezoid(force[order], delta[order]))
         taken = float(np.interp(depth, c["delta"], spent))
-        rows.append(
-            (depth, u.residual_sphere + u.residual_flat, math.sqrt(max(returned, 0.0) / taken))
-        )
+        left = u.residual_sphere + u.residual_flat
+        rows.append((depth, left, math.sqrt(max(returned, 0.0) / taken)))
     deepest = float(c["delta"][-1]) / pair.R * (1.0 + 1e-9)
     loaded, carried = c["delta"][inside], c["force"][inside]
     return Reference(pair, record.case.name, distance, loaded, carried, tuple(rows), deepest)
@@ -215,11 +209,10 @@ def judged(
     found: dict[str, Departure] = {}
     for law in laws:
         try:
-            found[law.name] = (
-                departure(law, reference) if reference else _from_elastic(law, pair, last)
-            )
+            far = departure(law, reference) if reference else _from_elastic(law, pair, last)
         except InputError:  # the table of another pair
             continue
+        found[law.name] = far
     return reference, found
 
 

@@ -24,45 +24,33 @@ _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 
 @dataclass(frozen=True)
 class PressedContact:
-    """The contact at the deepest approach whose pressure was kept.
+    """The contact at the deepest approach whose pressure was kept."""
 
-    `depth`: Delta/R; `mean_pressure`, `largest_pressure`: F/(pi a^2) and the largest over the
-    contact [Pa]; `largest_at`: radius where the largest is [m].
-    """
-
-    depth: float
-    mean_pressure: float
-    largest_pressure: float
-    largest_at: float
+    depth: float  # Delta/R
+    mean_pressure: float  # F/(pi a^2) [Pa]
+    largest_pressure: float  # over the contact [Pa]
+    largest_at: float  # radius [m]
 
 
 @dataclass(frozen=True)
 class Dent:
     """What one unloading leaves.
 
-    - `depth`: Delta/R from which it was unloaded.
-    - `load`: force there [N].
-    - `left_sphere`, `left_flat`: permanent displacement of the pole, and of the flat below it [m].
-    - `contact_diameter`: of the contact under the load [m].
-    - `rim_diameter`, `rim_height`: of the highest circle of the flat around the dent, between the
-      nodes, and how far it stands above the flat that was [m]; nan and 0 where the flat sinks in
-      and has no rim.
-    - `brinell_by_contact`, `brinell_by_rim`: hardness after Brinell by either diameter [kgf/mm2];
-      nan where the ball keeps more than 5 % of the permanent approach, or there is no such
-      diameter.
-    - `energy_returned`: work on the way back over that on the way in [-].
+    The rim is the highest circle of the flat around the dent, between the nodes: nan and 0 where
+    the flat sinks in. Hardness after Brinell is nan where the ball keeps more than 5 % of the
+    permanent approach, or there is no such diameter.
     """
 
-    depth: float
-    load: float
-    left_sphere: float
-    left_flat: float
-    contact_diameter: float
-    rim_diameter: float
-    rim_height: float
-    brinell_by_contact: float
-    brinell_by_rim: float
-    energy_returned: float
+    depth: float  # Delta/R from which it was unloaded
+    load: float  # force there [N]
+    left_sphere: float  # permanent displacement of the pole [m]
+    left_flat: float  # and of the flat below it [m]
+    contact_diameter: float  # under the load [m]
+    rim_diameter: float  # [m]
+    rim_height: float  # over the flat that was [m]
+    brinell_by_contact: float  # [kgf/mm2]
+    brinell_by_rim: float  # [kgf/mm2]
+    energy_returned: float  # work on the way back over that on the way in [-]
 
     def lines(self) -> Iterator[str]:
         """Yield what there is to say, for people."""
@@ -85,15 +73,11 @@ class Dent:
 
 @dataclass(frozen=True)
 class MeasuredContact:
-    """What people measure of a solved pair: first yield, the deepest pressures, what is left.
+    """What people measure of a solved pair: first yield, the deepest pressures, what is left."""
 
-    `first_yield` is none where neither body yields, `pressed` where that depth was not reached;
-    `dents` has one of every unloading.
-    """
-
-    first_yield: FirstYield | None
-    pressed: PressedContact | None
-    dents: tuple[Dent, ...]
+    first_yield: FirstYield | None  # none where neither body yields
+    pressed: PressedContact | None  # none where that depth was not reached
+    dents: tuple[Dent, ...]  # one of every unloading
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything in SI units, Brinell's hardness in kgf/mm2; None for what is not."""
@@ -163,15 +147,13 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
     rises = flat > 0.0 and u.crater_z[top] > max(1e-3 * flat, KEPT_ROUND_OFF * R)
     rim, height = _crest(u.crater_r, u.crater_z, top) if rises else (math.nan, 0.0)
-    of_the_flat = flat > 0.0 and sphere <= RULES.ball_keeps * (sphere + flat)
-    by_contact, by_rim = (
-        brinell(load, 2.0 * R, d) if of_the_flat else math.nan for d in (contact, rim)
-    )
+    dented = flat > 0.0 and sphere <= RULES.ball_keeps * (sphere + flat)
+    by_contact, by_rim = (brinell(load, 2.0 * R, d) if dented else math.nan for d in (contact, rim))
+    back = _returned(solution, u)
     return Dent(
         depth=u.depth, load=load, left_sphere=sphere, left_flat=flat,
         contact_diameter=contact, rim_diameter=rim, rim_height=height,
-        brinell_by_contact=by_contact, brinell_by_rim=by_rim,
-        energy_returned=_returned(solution, u),
+        brinell_by_contact=by_contact, brinell_by_rim=by_rim, energy_returned=back,
     )  # fmt: skip
 
 

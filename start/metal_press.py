@@ -51,9 +51,7 @@ def presses(
         alike.setdefault((scenes[k].pair.sphere, scenes[k].pair.flat), []).append(k)
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
-        turns = tuple(
-            float(x) for x in np.geomspace(min(low, 0.3 * high), high, DIAGNOSIS.solve_turns)
-        )
+        turns = tuple(np.geomspace(min(low, 0.3 * high), high, DIAGNOSIS.solve_turns).tolist())
         yield MetalPress(_press(scenes[these[0]], constants, turns, ()), tuple(these))
 
 

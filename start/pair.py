@@ -25,7 +25,6 @@ from .measured import MeasuredContact, measured
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
 # limit: approach over R of a pair whose depth is not said [-]: shallow enough for a quick solve
 _DEPTH = 0.01
 

@@ -15,35 +15,21 @@ from ..studies import COMMANDS as _WORKSHOP
 from .places import misused
 
 SECTIONS = (
-    (
-        "Your own",
-        (
-            "impact",
-            "diagnose",
-            "metal",
-            "recordings",
-            "reduce",
-            "case",
-            "laws",
-            "export",
-            "inverse",
-        ),
-    ),
+    ("Your own", (
+        "impact", "diagnose", "metal", "recordings", "reduce", "case", "laws", "export", "inverse",
+    )),
     ("Behind the law", ("campaign", "fit")),
     ("To begin", ("examples", "materials", "keys", "doctor", "version")),
     ("Workshop, in a checkout only", tuple(name for name in _WORKSHOP if " " not in name)),
-)
+)  # fmt: skip
 """Commands as the first help shows them; what stands in none comes last."""
 
 
 class Commands(TyperGroup):
-    """A group that shows its commands whole, and runs `alone` where none is given.
-
-    `sections`: titles and their commands; none: all under one title.
-    """
+    """A group that shows its commands whole, and runs `alone` where none is given."""
 
     alone: tuple[str, ...] = ("--help",)
-    sections: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    sections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # titles, and the commands under each
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Take `alone` for an empty command line."""

@@ -23,8 +23,6 @@ FILES = {
     "set": "set.toml of a recording set",
     "trials": "columns of a set's trials.csv",
 }
-"""What there are keys of."""
-
 _SCHEMAS = {
     "case": ("start.case_file", "CaseFile"),
     "impact": ("dynamics.files.setup", "SetupFile"),
@@ -43,18 +41,13 @@ _UNITS = {
 
 
 class Key(NamedTuple):
-    """One key of a file.
+    """One key of a file."""
 
-    - `table`: where it stands, as in the file: `[target]`, or empty at the top.
-    - `name`, `meaning`, `allowed`, `default`: what is written, what it says, what is accepted, and
-      what holds without it.
-    """
-
-    table: str
+    table: str  # where it stands, as in the file: `[target]`, or empty at the top
     name: str
     meaning: str
     allowed: str
-    default: str
+    default: str  # what holds without it
 
 
 def keys(
@@ -71,8 +64,7 @@ def keys(
             if key.table != table:
                 table = key.table
                 typer.echo(f"\n{table}")
-            given = "needed" if not key.default else key.default
-            entry(key.name, f"{key.meaning} {key.allowed}; {given}.")
+            entry(key.name, f"{key.meaning} {key.allowed}; {key.default or 'needed'}.")
         typer.echo("")
 
 
@@ -83,15 +75,10 @@ def keys_of(kind: str) -> list[Key]:
 
         columns = {**CONDITIONS, **MEASURED}
         return [
-            Key(
-                "",
-                name,
-                f"{c.meaning[:1].upper()}{c.meaning[1:]}.",
-                "a text" if c.kind == "text" else _with_unit(c.allowed, name),
-                _LEFT_OUT,
-            )
+            Key("", name, f"{c.meaning[:1].upper()}{c.meaning[1:]}.",
+                "a text" if c.kind == "text" else _with_unit(c.allowed, name), _LEFT_OUT)
             for name, c in columns.items()
-        ]
+        ]  # fmt: skip
     module, table = _SCHEMAS[kind]
     return list(_keys(getattr(import_module(f"...{module}", __package__), table), ""))
 

@@ -33,11 +33,7 @@ def show_table(
     to: Console, head: Sequence[str], rows: Sequence[Sequence[str]], *, title: str = "",
     align: Literal["left", "right"] = "right",
 ) -> None:  # fmt: skip
-    """Print a table, in parts where the width does not hold all columns.
-
-    The first column is repeated in every part, and stands on the left; `align` is that of the
-    others: numbers right, words left.
-    """
+    """Print a table in parts that fit the width, the first column in each; `align`: the others."""
     if title:
         to.print(title)
     for table in parts(head, rows, width=to.width, align=align):
@@ -76,8 +72,7 @@ def say(line: str) -> None:
     if not sys.stdout.isatty() or len(line) <= _columns():
         typer.echo(line)
         return
-    indent = len(line) - len(line.lstrip())
-    typer.echo(wrapped(line.strip(), indent=indent, further=2))
+    typer.echo(wrapped(line.strip(), indent=len(line) - len(line.lstrip()), further=2))
 
 
 def _columns() -> int:
@@ -85,10 +80,7 @@ def _columns() -> int:
 
 
 def wrapped(text: str, indent: int = 0, further: int = 0) -> str:
-    """Return a text in lines of the terminal's width, all but the first indented `further`.
-
-    Names are not broken.
-    """
+    """Return a text, names whole, in lines of a terminal, all but the first indented `further`."""
     lines = textwrap.wrap(
         text, _columns(), initial_indent=" " * indent, subsequent_indent=" " * (indent + further),
         break_long_words=False, break_on_hyphens=False,

@@ -48,10 +48,8 @@ def comparison(
 ) -> str:
     """Return measured beside the simulations, and the differences below, for one observable.
 
-    - `points`: numbers of one observable.
-    - `against`: what the axis shows.
-    - `strikers`: all strikers of the report, for their markers.
-    - `key`: begins the ids of the figure's elements; no other figure of the page has it.
+    `against`: what the axis shows; `strikers`: all of the report, for their markers; `key`: begins
+    the ids of the figure's elements, and no other's of the page.
     """
     row = OBSERVABLES[points[0].observable]
     upper, lower, left = _plots(points, against)
@@ -177,8 +175,7 @@ def path(history: Sequence[After]) -> str:
     y = PlotAxis(0.0, 1.0, 186.0, _TOP)
     left = room([y], 1)
     places = np.arange(1.0, len(history) + 1.0)
-    x = PlotAxis(0.7, len(history) + 0.3, left, _RIGHT)
-    panel = Plot(x, y)
+    panel = Plot(PlotAxis(0.7, len(history) + 0.3, left, _RIGHT), y)
     panel.frame("", ["probability [-]"], left)
     names = paths_of(history)
     last = max(names, key=lambda name: history[-1].probabilities.get(name, 0.0))
@@ -191,6 +188,5 @@ def path(history: Sequence[After]) -> str:
     for place, one in zip(places.tolist(), history, strict=True):
         panel.text(place, f"after session {one.batch:g}")
         panel.text(place, counted(one.trials, "trial"), line=2)
-    return figure(
-        [panel], "probability of each explanation after each session", width=_WIDTH, height=216.0
-    )
+    label = "probability of each explanation after each session"
+    return figure([panel], label, width=_WIDTH, height=216.0)

@@ -113,9 +113,8 @@ def change_lines(v: Verdict) -> list[str]:
     most = sorted(now, key=lambda k: -abs(now[k] - was[k]))[:_CHANGED]
     told = [
         f"{explanation(k, v.titles)} {percent(was[k])}, now {percent(now[k])}"
-        for k in most
-        if abs(now[k] - was[k]) >= 0.01
-    ]
+        for k in most if abs(now[k] - was[k]) >= 0.01
+    ]  # fmt: skip
     new = counted(after.trials - before.trials, "trial")
     if not told:
         return [f"Session {after.batch:g} ({new}) changed no probability by a per cent."]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -16,14 +16,13 @@ from ..findings import Verdict
 from .figures import comparison, correction, path, paths_of
 from .series import SeriesPoint
 from .story import Story, story_of
-from .wording import GLOSSARY, explanation
+from .wording import explanation
 
 _TEMPLATE = Path(__file__).parent / "template"
 _SHAPES = ("●", "■", "▲", "◆", "▼", "✚", "✖", "★")
 
 
-@dataclass(frozen=True)
-class Panel:
+class Panel(NamedTuple):
     """One figure of the page: an observable against something that varies."""
 
     observable: str
@@ -33,10 +32,7 @@ class Panel:
 
 
 def write_report(verdict: Verdict, path: Path) -> tuple[Path, ...]:
-    """Write the report, and beside it what its figures show as JSON and CSV.
-
-    Returned: the files that were written.
-    """
+    """Write the report, and what its figures show as JSON and CSV beside it; return the files."""
     story = story_of(verdict)
     numbers = json.dumps(_finite(story.to_dict()), indent=1, allow_nan=False)
     contents = {
@@ -57,26 +53,20 @@ def page(v: Verdict, story: Story) -> str:
     )  # fmt: skip
     panels = panels_of(story)
     words = [explanation(name, v.titles) for name in paths_of(v.history)]
-    observables = {p.observable: p.label for p in panels}
     return environment.get_template("report.html").render(
-        s=story,
+        s=story, seed=v.seed, impacts=v.impacts, version=__version__,
         style=(_TEMPLATE / "report.css").read_text(encoding="utf-8"),
         script=(_TEMPLATE / "report.js").read_text(encoding="utf-8"),
-        panels=panels,
-        observables=observables,
+        panels=panels, observables={p.observable: p.label for p in panels},
         corrected=correction(v.corrections) if v.corrections else "",
         path=path(v.history) if v.history else "",
         paths=list(zip(_SHAPES, words, strict=False)),
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),
         weightless=any(not p.weight for p in story.points),
-        glossary=GLOSSARY,
         csv=_link("text/csv", table(story.points)),
         json=_link("application/json", json.dumps(_finite(story.to_dict()))),
-        seed=v.seed,
-        impacts=v.impacts,
-        version=__version__,
-    )
+    )  # fmt: skip
 
 
 def panels_of(story: Story) -> tuple[Panel, ...]:

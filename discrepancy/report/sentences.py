@@ -12,18 +12,9 @@ from ..choice.decide import WRONG_INPUT
 from ..choice.odds import OUTSIDE
 from ..findings import Verdict, WrongInput
 from ..rules import RULES
+from . import wording
 from .next_session import change_lines, next_lines
-from .wording import (
-    compared,
-    explanation,
-    interval,
-    joined,
-    miss_sentences,
-    parameter_name,
-    percent,
-    quantity,
-    title_of,
-)
+from .wording import explanation, interval, joined, parameter_name, percent, quantity, title_of
 
 # limit: probability from which one has a line [-]; half a per cent is printed as one
 STORY_LEAST = 0.005
@@ -200,43 +191,37 @@ def nowhere(v: Verdict) -> str:
 
 def lines(v: Verdict) -> list[str]:
     """Return the finding as lines for a terminal."""
-    out = [f"{v.name}: {held(v)}", "", headline(v)]
-    flagged = [a["message"] for a in v.audit]
-    if flagged:
-        out += ["", "Inputs", *(f"  {m}" for m in flagged)]
-    out += ["", "Where the simulation misses"]
-    out += [f"  {m}" for m in miss_sentences(v.located, most=4)]
-    out += [f"  {m}" for m in [nowhere(v)] if m]
-    if v.best.mechanisms:
-        out += ["", "What explains it"]
-        for name, value, between in own_parameters(v):
-            out.append(f"  {name}{':' if value == _UNTOLD else ' ='} {value} (90 %: {between})")
-        out.append(f"  {predicted(v)}")
-    part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
-    out += ["", "Probability that it takes part"]
-    out += [f"  {percent(x):>14}  {k}: {title_of(k, v.titles)}" for k, x in list(part.items())[:5]]
+    part = [(x, f"{k}: {title_of(k, v.titles)}") for k, x in v.inclusion.items() if x >= 0.01][:5]
     unknown = v.probabilities.get(OUTSIDE, 0.0)
-    if unknown >= 0.01:
-        out.append(f"  {percent(unknown):>14}  something that dentscope has no name for")
-    nothing = v.probabilities.get("baseline", 0.0)
-    out.append(f"  {percent(nothing):>14}  nothing is missing")
-    if v.corrections:
-        out += ["", "Where the force law would have to change"]
-        for c in v.corrections:
-            k = max(range(len(c.factor)), key=lambda i: abs(math.log(c.factor[i])))
-            out.append(
-                f"  {c.phase}: times {c.factor[k]:.2f} ({c.low[k]:.2f} to {c.high[k]:.2f}) at a "
-                f"depth of {c.depth_over_R[k]:.2g} R"
-            )
-    if step := [*change_lines(v), *next_lines(v)]:
-        out += ["", "Next experiment", *(f"  {line}" for line in step)]
-    if v.limits and v.verdict == "adequate":
-        out += ["", "What would have been seen"]
-        out += [f"  {what}: {number} from {size} on" for what, number, size in limit_rows(v)]
-    out += ["", "How it was decided", *(f"  {r}" for r in v.reasons)]
-    notes = [n for n in v.notes if n]
-    if notes:
-        out += ["", "Notes", *(f"  {n}" for n in notes)]
+    part += [(unknown, "something that dentscope has no name for")] * (unknown >= 0.01)
+    part += [(v.probabilities.get("baseline", 0.0), "nothing is missing")]
+    changes = []
+    for c in v.corrections:
+        k = max(range(len(c.factor)), key=lambda i: abs(math.log(c.factor[i])))
+        changes.append(
+            f"{c.phase}: times {c.factor[k]:.2f} ({c.low[k]:.2f} to {c.high[k]:.2f}) at a "
+            f"depth of {c.depth_over_R[k]:.2g} R"
+        )
+    explained = [
+        f"{name}{':' if value == _UNTOLD else ' ='} {value} (90 %: {between})"
+        for name, value, between in (own_parameters(v) if v.best.mechanisms else ())
+    ]
+    seen = limit_rows(v) if v.limits and v.verdict == "adequate" else ()
+    sections = {
+        "Inputs": [a["message"] for a in v.audit],
+        "Where the simulation misses": [*wording.miss_sentences(v.located, most=4), nowhere(v)],
+        "What explains it": [*explained, predicted(v)] if v.best.mechanisms else [],
+        "Probability that it takes part": [f"{percent(x):>14}  {what}" for x, what in part],
+        "Where the force law would have to change": changes,
+        "Next experiment": [*change_lines(v), *next_lines(v)],
+        "What would have been seen": [f"{what}: {x} from {size} on" for what, x, size in seen],
+        "How it was decided": v.reasons,
+        "Notes": v.notes,
+    }
+    out = [f"{v.name}: {held(v)}", "", headline(v)]
+    for title, told in sections.items():
+        if rows := [f"  {row}" for row in told if row]:
+            out += ["", title, *rows]
     return out
 
 
@@ -258,7 +243,8 @@ def predicted(v: Verdict) -> str:
         return "no condition could be left out of the fit to try the prediction on"
     return (
         f"on conditions left out of the fit the miss goes from {i['held_out_baseline']:.1f} to "
-        f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: {compared(i)}"
+        f"{i['held_out_extended']:.1f} standard errors, where noise alone leaves 1: "
+        f"{wording.compared(i)}"
     )
 
 

@@ -19,43 +19,30 @@ STATED, WITHOUT, WITH = "as stated", "best without anything missing", "with the 
 
 
 class Against(NamedTuple):
-    """Something that varies over the conditions.
+    """Something that varies over the conditions."""
 
-    `key`: name in files; `label`: text of an axis; `values`: (conditions,) in the label's unit.
-    """
-
-    key: str
-    label: str
-    values: Array
+    key: str  # name in files
+    label: str  # text of an axis
+    values: Array  # (conditions,) in the label's unit
 
 
 @dataclass(frozen=True, slots=True)
 class SeriesPoint:
-    """One number of the comparison, in the units that people read.
-
-    - `observable`, `unit`, `striker`: what, in which unit, of whom.
-    - `condition`, `trials`: number of the condition, from 1, and trials behind the mean.
-    - `x`: what varies, by the key of `Against`.
-    - `measured`, `low`, `high`: mean of the repeats and its standard error on both sides.
-    - `as_stated`: simulated with every number as stated.
-    - `best_without`: simulated with the numbers moved as far as it takes, nothing added.
-    - `with_verdict`: the same with what is named, its form moved too; nan without any.
-    - `weight`: whether it counts: a value far off everything else does not.
-    """
+    """One number of the comparison, in the units that people read."""
 
     observable: str
     unit: str
     striker: str
-    condition: int
-    trials: int
-    x: dict[str, float]
-    measured: float
-    low: float
+    condition: int  # from 1
+    trials: int  # behind the mean
+    x: dict[str, float]  # what varies, by the key of `Against`
+    measured: float  # mean of the repeats
+    low: float  # it less its standard error
     high: float
-    as_stated: float
-    best_without: float
-    with_verdict: float
-    weight: bool
+    as_stated: float  # simulated with every number as stated
+    best_without: float  # with the numbers moved as far as it takes, nothing added
+    with_verdict: float  # the same with what is named, its form moved too; nan without any
+    weight: bool  # whether it counts: a value far off everything else does not
 
     def row(self) -> dict[str, Any]:
         """Return the point as one flat row of a table."""

@@ -12,17 +12,8 @@ from ...dynamics.files.second import second_of
 from ..estimates import PULLED
 from ..findings import Verdict
 from ..inference.fit import Fit
+from . import sentences as say
 from .next_session import change_lines, next_lines
-from .sentences import (
-    STORY_LEAST,
-    headline,
-    held,
-    limit_rows,
-    nowhere,
-    own_parameters,
-    predicted,
-    why,
-)
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint, againsts, points_of, series_of
 from .wording import explanation, interval, miss_sentences, number_name, percent, quantity, title_of
 
@@ -56,107 +47,77 @@ class ToldCells(NamedTuple):
 
 @dataclass(frozen=True)
 class Story:
-    """Everything that a report says.
+    """Everything that a report says, in sentences, bars and tables."""
 
-    - `name`, `finding`, `why`, `summary`: the set, the finding in one sentence, why in three, and
-      what was compared.
-    - `points`, `against`, `strikers`: what is drawn, against what, and who struck.
-    - `series`: the three simulations that are drawn, each with what its fit took.
-    - `misses`, `audit`, `reasons`, `notes`: sentences: where the simulation misses, contradictions
-      of the inputs, how the verdict came about, what was assumed.
-    - `nowhere`: what to think of it where places and verdict seem to contradict each other.
-    - `parts`, `explanations`: probability of each mechanism to take part, and of each explanation.
-    - `found`: numbers of the mechanisms that are named, with intervals.
-    - `prediction`: how the trials left out of the fit are predicted, in one sentence.
-    - `doubt`: what the uncertainty of the comparison is made of.
-    - `numbers`, `scores`, `excluded`, `limits`: tables for those who want to know.
-    - `next_step`, `further`: whether to go on; steps of the next session, and what its outcome
-      would mean.
-    - `changed`: what the last session changed.
-    """
-
-    name: str
-    finding: str
-    why: str
-    summary: str
-    points: tuple[SeriesPoint, ...]
+    name: str  # of the set
+    finding: str  # in one sentence
+    why: str  # in three
+    summary: str  # what was compared
+    points: tuple[SeriesPoint, ...]  # what is drawn
     against: tuple[Against, ...]
     strikers: tuple[str, ...]
-    series: tuple[str, str, str]
-    misses: tuple[str, ...]
-    nowhere: str
-    audit: tuple[str, ...]
-    reasons: tuple[str, ...]
-    notes: tuple[str, ...]
-    parts: tuple[Bar, ...]
+    series: tuple[str, str, str]  # the simulations that are drawn, each with what its fit took
+    misses: tuple[str, ...]  # where the simulation misses
+    nowhere: str  # what to think of it where places and verdict seem to contradict each other
+    audit: tuple[str, ...]  # contradictions of the inputs
+    reasons: tuple[str, ...]  # how the verdict came about
+    notes: tuple[str, ...]  # what was assumed
+    parts: tuple[Bar, ...]  # probability of each mechanism to take part
     explanations: tuple[Bar, ...]
-    found: ToldCells
-    prediction: str
-    doubt: tuple[Bar, ...]
+    found: ToldCells  # numbers of the mechanisms that are named, with intervals
+    prediction: str  # how the trials left out of the fit are predicted
+    doubt: tuple[Bar, ...]  # what the uncertainty of the comparison is made of
     numbers: ToldCells
     scores: ToldCells
     excluded: ToldCells
     limits: ToldCells
-    next_step: str
-    further: tuple[str, ...]
-    changed: tuple[str, ...]
+    next_step: str  # whether to go on
+    further: tuple[str, ...]  # steps of the next session, and what its outcome would mean
+    changed: tuple[str, ...]  # by the last session
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the figures show, for programs."""
         return {
-            "format": "report/1",
-            "set": self.name,
-            "finding": self.finding,
+            "format": "report/1", "set": self.name, "finding": self.finding,
             "axes": {a.key: a.label for a in self.against},
             "points": [p.row() for p in self.points],
-        }
+        }  # fmt: skip
 
 
 def story_of(v: Verdict) -> Story:
     """Return what there is to say of a verdict."""
     step, *further = [*next_lines(v), ""]
     return Story(
-        name=v.name,
-        finding=headline(v),
-        why=why(v),
-        summary=_summary(v),
-        points=points_of(v),
-        against=againsts(v),
+        name=v.name, finding=say.headline(v), why=say.why(v), summary=_summary(v),
+        points=points_of(v), against=againsts(v),
         strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
         series=(STATED, f"{WITHOUT}: {_took(v, v.ranking.base)}", f"{WITH}: {_took(v, v.best)}"),
         misses=miss_sentences(v.located, most=_STORY_ROWS),
-        nowhere=nowhere(v),
+        nowhere=say.nowhere(v), reasons=v.reasons, notes=tuple(filter(None, v.notes)),
         audit=tuple(str(a["message"]) for a in v.audit),
-        reasons=v.reasons,
-        notes=tuple(n for n in v.notes if n),
         parts=tuple(
             Bar(f"{title_of(k, v.titles)} ({k})", p)
-            for k, p in v.inclusion.items()
-            if p >= STORY_LEAST
+            for k, p in v.inclusion.items() if p >= say.STORY_LEAST
         ),
         explanations=tuple(
-            Bar(explanation(k, v.titles), p) for k, p in v.probabilities.items() if p >= STORY_LEAST
+            Bar(explanation(k, v.titles), p)
+            for k, p in v.probabilities.items() if p >= say.STORY_LEAST
         ),
-        found=_found(v),
-        prediction=f"{predicted(v).capitalize()}." if v.best.mechanisms else "",
-        doubt=_doubt(v),
-        numbers=_numbers(v),
-        scores=_scores(v),
+        prediction=f"{say.predicted(v).capitalize()}." if v.best.mechanisms else "",
+        found=_found(v), doubt=_doubt(v), numbers=_numbers(v), scores=_scores(v),
         excluded=ToldCells(
             ("what", "why not"), tuple((title_of(k, v.titles), x) for k, x in v.excluded.items())
         ),
-        limits=ToldCells(("what", "number", "would have been seen from"), limit_rows(v)),
-        next_step=step,
-        further=tuple(filter(None, further)),
-        changed=tuple(change_lines(v)),
-    )
+        limits=ToldCells(("what", "number", "would have been seen from"), say.limit_rows(v)),
+        next_step=step, further=tuple(filter(None, further)), changed=tuple(change_lines(v)),
+    )  # fmt: skip
 
 
 def _summary(v: Verdict) -> str:
     p = v.problem
     rate = "" if p.law_name == "hertz" else ", or rate of the metal"
     return (
-        f"{held(v)}, compared with a simulation without vibration{rate} "
+        f"{say.held(v)}, compared with a simulation without vibration{rate} "
         f"(contact law: {p.law_name})."
     )
 
@@ -179,12 +140,8 @@ def _took(v: Verdict, fitted: Fit) -> str:
 
 
 def _found(v: Verdict) -> ToldCells:
-    rows = tuple(
-        (
-            name, value, between, axis.parameter.source,
-        )
-        for (name, value, between), axis in zip(own_parameters(v), v.best.grid.axes, strict=True)
-    )  # fmt: skip
+    parameters = zip(say.own_parameters(v), v.best.grid.axes, strict=True)
+    rows = tuple((*told, axis.parameter.source) for told, axis in parameters)
     return ToldCells(("number", "value", "90 % interval", "where its range comes from"), rows)
 
 
@@ -215,7 +172,7 @@ def _numbers(v: Verdict) -> ToldCells:
             interval(q["low"], q["high"], q["unit"]),
             f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
         )
-        for n, q in ((n, v.parameters[n.name]) for n in v.problem.nuisances)
+        for n in v.problem.nuisances for q in [v.parameters[n.name]]
     )  # fmt: skip
     head = ("number of set.toml", "stated", "found", "90 % interval", "shift", "surprise")
     return ToldCells(head, rows)

@@ -60,9 +60,8 @@ class PlotAxis:
         """Return where values lie [pt], shape (...)."""
         ends = np.array([self.low, self.high])
         value, ends = (np.log(value), np.log(ends)) if self.log else (np.asarray(value), ends)
-        return np.asarray(
-            self.start + (value - ends[0]) / np.ptp(ends) * (self.end - self.start), float
-        )
+        share = (value - ends[0]) / np.ptp(ends)
+        return np.asarray(self.start + share * (self.end - self.start), float)
 
     def ticks(self) -> dict[str, float]:
         """Return where round values stand [pt] by their texts; 1, 2, 5 of a logarithm's decades."""

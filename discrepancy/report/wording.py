@@ -1,4 +1,4 @@
-"""Words of a report: numbers as people write them, names without keys, the glossary."""
+"""Words of a report: numbers as people write them, names without keys."""
 
 from __future__ import annotations
 
@@ -11,20 +11,14 @@ from ..locate import Located
 _PREFIXES, _UNIT = "qryzafpnµm kMGTPEZYRQ", 10
 _PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
 _WHILE = {
-    "approach": "before the touch",
-    "loading": "while the bodies are pressed together",
-    "unloading": "while they part",
-    "sliding": "while the tip slides",
+    "approach": "before the touch", "loading": "while the bodies are pressed together",
+    "unloading": "while they part", "sliding": "while the tip slides",
     "free-flight": "in the flight",
-}
+}  # fmt: skip
 _KEYS = {
-    "E_Pa": "Young's modulus",
-    "Sy_Pa": "yield strength",
-    "tip_radius_m": "radius of the tip",
-    "radius_m": "radius",
-    "mass_kg": "mass",
-    "restitution": "restitution where nothing is missing",
-}
+    "E_Pa": "Young's modulus", "Sy_Pa": "yield strength", "tip_radius_m": "radius of the tip",
+    "radius_m": "radius", "mass_kg": "mass", "restitution": "restitution where nothing is missing",
+}  # fmt: skip
 _WHOLE = {
     "speed.scale": "all speeds, by one factor",
     "angle.offset": "all angles, by one shift",
@@ -32,29 +26,6 @@ _WHOLE = {
     "dent.rim": "rim of a dent over its contact circle",
     "friction.coefficient": "friction coefficient",
 }
-GLOSSARY = (
-    (
-        "simulation as described",
-        "the impact of the bodies in your set.toml: rigid striker, rigid base, a contact law of "
-        "the two metals in which flow stress depends neither on rate nor on temperature; every "
-        "number may move within its stated uncertainty",
-    ),
-    ("mechanism", "one piece of physics that can be added to the simulation, such as friction "
-     "that depends on speed, or a flat that moves on its support"),
-    ("restitution", "rebound over approach speed of the tip, along the normal of the contact"),
-    ("takes part", "the mechanism acts, alone or together with another one"),
-    ("90 % interval", "the value lies in it with a probability of 90 %, if the explanation is "
-     "right"),
-    ("standard error", "by how much the mean of repeated readings is uncertain"),
-    ("conditions", "trials with the same striker, speed and angle, taken together"),
-    ("number of the comparison (cell)", "the mean of one measured quantity at one condition"),
-    ("weight of evidence (nat)", "natural logarithm of how many times more probable an "
-     "explanation makes the readings than another does: 3 is 20 times, 10 is 22 000 times"),
-    ("shift", "by how many of its own stated standard deviations a number of your set.toml would "
-     "have to move; beyond 2 look at it again"),
-    ("surprise", "the same, over what chance alone would move it"),
-)  # fmt: skip
-"""Terms of the report, in the order in which they appear."""
 
 
 def title_of(name: str, titles: Mapping[str, str]) -> str:

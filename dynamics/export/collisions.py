@@ -35,16 +35,12 @@ class ExportedBlow(NamedTuple):
 
 
 class Damped(NamedTuple):
-    """A damped contact law.
+    """A damped contact law."""
 
-    `name`: of the law in tables; `power`: exponent of its elastic force; `force`: from depth, rate
-    and damping, all without dimension; `most`: largest damping that is looked at.
-    """
-
-    name: str
-    power: float
-    force: Callable[[float, float, float], float]
-    most: float
+    name: str  # in tables
+    power: float  # exponent of its elastic force
+    force: Callable[[float, float, float], float]  # of depth, rate, damping, without dimension
+    most: float  # largest damping that is looked at
 
 
 TSUJI_DAMPING = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
@@ -122,8 +118,5 @@ def _unit_blow(law: Damped, damping: float) -> ExportedBlow:
 
 def entered_for(damping: float) -> float:
     """Return the restitution to enter for Tsuji's damping; none is 1.0007 (the polynomial)."""
-
-    def missed(entered: float) -> float:
-        return math.fsum(a * entered**k for k, a in enumerate(TSUJI_DAMPING)) - damping
-
-    return float(brentq(missed, 0.0, 1.02))
+    terms = tuple(enumerate(TSUJI_DAMPING))
+    return float(brentq(lambda e: math.fsum(a * e**k for k, a in terms) - damping, 0.0, 1.02))

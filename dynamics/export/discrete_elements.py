@@ -28,17 +28,8 @@ from ..batch import impacts
 from ..integrate import Settings
 from ..mechanisms.asked import NONE_ASKED, Asked
 from ..scene import Approach, Scene, Striker, scene_of
-from .collisions import (
-    DASHPOT,
-    HUNT,
-    TSUJI,
-    Damped,
-    ExportedBlow,
-    blow_on,
-    damping_for,
-    entered_for,
-    stiffness_for,
-)
+from . import collisions
+from .collisions import DASHPOT, HUNT, TSUJI, Damped, ExportedBlow
 
 SOFTENED = "hertz-tsuji-softened"
 
@@ -136,13 +127,11 @@ def _row(blow: ExportedBlow, pair: Pair, mass: float) -> ExportedRow:
 def _hertz(blow: ExportedBlow, pair: Pair, mass: float) -> list[Substitute]:
     own = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R)
     damping, soft = _as_deep(TSUJI, blow, mass)
-    entered = entered_for(damping)
-    return [
-        Substitute(
-            name, k, math.nan, entered, math.nan, blow_on(TSUJI, k, damping, mass, blow.speed)
-        )
-        for name, k in (("hertz-tsuji", own), (SOFTENED, soft))
-    ]
+    entered, found = collisions.entered_for(damping), list[Substitute]()
+    for name, k in (("hertz-tsuji", own), (SOFTENED, soft)):
+        made = collisions.blow_on(TSUJI, k, damping, mass, blow.speed)
+        found.append(Substitute(name, k, math.nan, entered, math.nan, made))
+    return found
 
 
 def _hysteretic(blow: ExportedBlow, _: Pair, mass: float) -> list[Substitute]:
@@ -159,14 +148,14 @@ def _hysteretic(blow: ExportedBlow, _: Pair, mass: float) -> list[Substitute]:
 def _straight(damped: Damped, blow: ExportedBlow, _: Pair, mass: float) -> list[Substitute]:
     c, k = _as_deep(damped, blow, mass)
     with_unit = c * math.sqrt(mass * k) if damped is DASHPOT else c / blow.speed
-    found = blow_on(damped, k, c, mass, blow.speed)
+    found = collisions.blow_on(damped, k, c, mass, blow.speed)
     return [Substitute(damped.name, k, math.nan, math.nan, with_unit, found)]
 
 
 def _as_deep(damped: Damped, blow: ExportedBlow, mass: float) -> tuple[float, float]:
     """Damping without dimension and stiffness at which restitution and depth are the blow's."""
-    damping = damping_for(damped, blow.restitution)
-    return damping, stiffness_for(damped, blow.depth, damping, mass, blow.speed)
+    damping = collisions.damping_for(damped, blow.restitution)
+    return damping, collisions.stiffness_for(damped, blow.depth, damping, mass, blow.speed)
 
 
 HEAD = (
@@ -176,7 +165,6 @@ HEAD = (
     "depth_missed_percent", "peak_force_missed_percent", "contact_time_missed_percent",
     "restitution_missed",
 )  # fmt: skip
-"""Columns of the table."""
 
 
 def table(rows: Sequence[ExportedRow], *, law: str, contact: str) -> list[tuple[str | float, ...]]:

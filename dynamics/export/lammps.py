@@ -52,7 +52,6 @@ print "v = ${{v}} m/s: restitution {printed}"
 next v dt steps flat balls
 jump SELF drop
 """
-"""Input of LAMMPS: a drop for each speed."""
 
 
 def lammps_lines(

@@ -68,10 +68,7 @@ for speed, back in zip(before, data.qvel[2::6], strict=True):
 
 def mujoco_files(rows: Sequence[ExportedRow], contact: BodiesMet) -> dict[str, str]:
     """A model of MuJoCo with a ball for each speed, and the script that drops them."""
-    classes: list[str] = []
-    bodies: list[str] = []
-    speeds: list[str] = []
-    times: list[float] = []
+    classes, bodies, speeds, times = list[str](), list[str](), list[str](), list[float]()
     R = contact.radius
     for row in rows:
         s, name, x = row.named(DASHPOT.name), f"v{row.law.speed:g}", 4.0 * R * len(times)
@@ -105,7 +102,6 @@ def mujoco_files(rows: Sequence[ExportedRow], contact: BodiesMet) -> dict[str, s
 def drake_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """Python for Drake's point contact, of both bodies."""
     mu = f"CoulombFriction({contact.friction:g}, {contact.friction:g})"
-
     lines = ["# pydrake.geometry; the same properties for both bodies."]
     for row in rows:
         s = row.named(HUNT.name)

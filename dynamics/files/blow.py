@@ -64,10 +64,9 @@ class Blow:
     def lacks(self) -> dict[str, dict[str, Lack]]:
         """What the set-up leaves open, by law and name, with the blow that it would be."""
         return {
-            law.name: lacks_of(self.setup, law, self[law.name])
-            for law in self.laws
+            law.name: lacks_of(self.setup, law, self[law.name]) for law in self.laws
             if law.name in self.sure and self[law.name].restitution > 0.0
-        }
+        }  # fmt: skip
 
     def checks(self) -> list[str]:
         """Return what speaks against the set-up by the first law, and restitutions above 1."""
@@ -75,9 +74,8 @@ class Blow:
         ended = [law for law in self.laws if self[law.name].outcome.completed]
         outer = (
             outside(law, self.setup.scene(law), self[law.name])
-            for law in ended
-            if law.name not in self.doubts
-        )
+            for law in ended if law.name not in self.doubts
+        )  # fmt: skip
         unsure = ", ".join(law.name for law in ended if law.name not in self.sure)
         above = {law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in ended}
         return [
@@ -96,19 +94,16 @@ class Blow:
                 without.setdefault((name, reason), []).append(law.name)
         return [
             f"{name} does not act by {', '.join(laws)}: {reason}"
-            for (name, reason), laws in without.items()
-            if self.laws[0].name not in laws
-        ]
+            for (name, reason), laws in without.items() if self.laws[0].name not in laws
+        ]  # fmt: skip
 
     @cached_property
     def sure(self) -> frozenset[str]:
         """Laws by which the blow came to an end, at a depth where their error is known."""
         return frozenset(
-            law.name
-            for law in self.laws
-            if self[law.name].outcome.completed
+            law.name for law in self.laws if self[law.name].outcome.completed
             and compared(law, self.setup.scene(law).pair, self[law.name].peak_depth_m)
-        )
+        )  # fmt: skip
 
     def rules(self) -> list[str]:
         """Return what rules the bands of restitution and dent, by the first law."""
@@ -119,39 +114,31 @@ class Blow:
         (found,) = _shown([self[first]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
         lost = [part for part, changes in band.parts.items() if "restitution" not in changes]
-        return [
-            *(
-                f"the standard deviations are without the part of {part}: a blow for it did not end"
-                for part in lost
-            ),
-            *(
-                f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
-                f"{band.rules(name)} of the variance"
-                for name, scale, words in told
-                if band.std(name) > _SURE * found[name] > 0.0
-            ),
-            *(
-                f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
-                for key, share in idle(self.setup, band)
-            ),
-            *(
-                f"the standard deviation of {key} is {times:.2g} times its value: the bands have "
-                "the slope at the value, and do not go through that spread"
-                for key, times in vague(self.setup)
-            ),
-        ]
+        without, of = "the standard deviations are without the part of", "the standard deviation of"
+        lines = [f"{without} {part}: a blow for it did not end" for part in lost]
+        for name, scale, words in told:
+            if band.std(name) > _SURE * found[name] > 0.0:
+                cell = _cell(scale * found[name], scale * band.std(name))
+                lines.append(f"{words} {cell}: {band.rules(name)} of the variance")
+        for key, share in idle(self.setup, band):
+            lines.append(f"{of} {key}, {share:.2g} of it, changes nothing here")
+        for key, times in vague(self.setup):
+            lines.append(
+                f"{of} {key} is {times:.2g} times its value: the bands have the slope at the "
+                "value, and do not go through that spread"
+            )
+        return lines
 
     @cached_property
     def doubts(self) -> dict[str, str]:
         """What speaks against a law at the depth of its blow, by its name."""
-        scenes = [self.setup.scene(law) for law in self.laws]
-        told = {
-            law.name: objection(
-                law, demand(as_made(scene.law, scene.pair)[1], self[law.name].peak_depth_m)
-            )
-            for law, scene in zip(self.laws, scenes, strict=True)
-        }
-        return {name: against for name, against in told.items() if against}
+        told = {}
+        for law in self.laws:
+            scene = self.setup.scene(law)
+            need = demand(as_made(scene.law, scene.pair)[1], self[law.name].peak_depth_m)
+            if against := objection(law, need):
+                told[law.name] = against
+        return told
 
     @property
     def impacts(self) -> dict[str, Impact]:
@@ -172,24 +159,20 @@ class Blow:
         ended = [law for law, one in self.impacts.items() if one.outcome.completed]
         shown = dict(zip(ended, _shown([self[law] for law in ended]), strict=True))
 
+        def cell(law: str, key: str, scale: float) -> str:
+            if law not in shown:
+                return "unfinished" * (key == "restitution")
+            far = (*self._interval(law, key, exact=exact), *_reach(key, self[law]))
+            return _cell(scale * shown[law][key], *(scale * x for x in far))
+
         def row(label: str, key: str, scale: float, unit: str) -> tuple[str, ...]:
-            cells = [
-                _cell(
-                    scale * shown[law][key],
-                    *(scale * x for x in self._interval(law, key, exact=exact)),
-                    *(scale * x for x in _reach(key, self[law])),
-                )
-                if law in shown
-                else "unfinished" * (key == "restitution")
-                for law in self.traces
-            ]
+            cells = (cell(law, key, scale) for law in self.traces)
             return (f"{label} [{unit}]" if unit != "-" else label, *cells)
 
         rows = [
-            row(label, key, scale, unit)
-            for label, key, scale, unit in SHOWN
+            row(label, key, scale, unit) for label, key, scale, unit in SHOWN
             if key == "restitution" or any(abs(values[key]) > 0.0 for values in shown.values())
-        ]
+        ]  # fmt: skip
         last = {row["law"]: row[PRESSURE] for row in self.rows}
         for law, values in shown.items():
             values[PRESSURE] = last[law]
@@ -210,18 +193,12 @@ class Blow:
             return list(self.rows)
         last = {row["law"]: row["repeat"] for row in self.rows}
         named = [*(key for _, key, _, _ in SHOWN if key not in EXACT), PRESSURE]
-        return [
-            {
-                **row,
-                **{
-                    f"{key}_std": self.bands[row["law"]].std(key)
-                    if row["repeat"] == last[row["law"]] and row["law"] in self.sure
-                    else ""
-                    for key in named
-                },
-            }
-            for row in self.rows
-        ]
+
+        def stds(law: str, repeat: int) -> dict[str, Any]:
+            known = repeat == last[law] and law in self.sure
+            return {f"{key}_std": self.bands[law].std(key) if known else "" for key in named}
+
+        return [{**row, **stds(row["law"], row["repeat"])} for row in self.rows]
 
     def frame(self) -> Any:
         """Return a pandas data frame: a row a law and repeat, a column an observable [SI]."""

@@ -17,10 +17,7 @@ from ..scene import Striker
 
 
 def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, Striker]:
-    """Return pair and striker of a rig; `source` is the file that errors name.
-
-    A body without a modulus or Poisson's ratio is refused.
-    """
+    """Return pair and striker of a rig; refused without a modulus or Poisson's ratio of a body."""
     of, key = rig.of, f"strikers.{name}"
     body, flat = (rig.material(table, source=source) for table in (key, "target"))
     if body.rigid and flat.rigid:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field, field_validator
 from ...core.errors import InputError, InputErrors, in_file
 from ...core.inputs.ranges import LEAST_KNOWN, SPEEDS, span
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
+from ...core.rig import Length, Mass, Positive, Quantity, Radius, possible_inertia, quantities
 from ...core.unstated import unstated_equal
 from ..inverse import INFERRED, Inferred, MeasuredScar, infer
 from ..scene import Striker
@@ -40,19 +40,12 @@ class _RodTable(InputTable):
 
     def rod(self, values: Mapping[str, float] | None = None) -> Striker:
         """Return the rigid rod, with some of its numbers replaced."""
-        given = {
-            name: quantity.value
-            for name in _NUMBERS
-            if (quantity := getattr(self, name)) is not None
-        } | dict(values or {})
+        given = {**quantities(self), **(values or {})}
         return Striker(
             given["mass_kg"], given["tip_radius_m"], length=given["length_m"],
             radius=given.get("radius_m", math.nan), inertia=given.get("inertia_kg_m2", math.nan),
             name="rod",
         )  # fmt: skip
-
-
-_NUMBERS = ("tip_radius_m", "mass_kg", "radius_m", "length_m", "inertia_kg_m2")
 
 
 class _TrialTable(InputTable):
@@ -98,10 +91,7 @@ class InverseRow:
 
 
 def read_inverse(path: Path) -> list[InverseRow]:
-    """Read an inverse file and infer each trial; every mistake is a line.
-
-    A friction coefficient at which the tip sticks is one.
-    """
+    """Read an inverse file and infer each trial; every mistake is a line, as a tip that sticks."""
     source = str(path)
     content = read_toml(path)
     _check_striker(content, source)
@@ -138,9 +128,8 @@ def _check_striker(content: Mapping[str, Any], source: str) -> None:
 def _deviations(table: _RodTable, measured: MeasuredScar) -> dict[str, float]:
     """Standard deviations of what is inferred, by those of the rod's numbers; others are exact."""
     total = dict.fromkeys(INFERRED, 0.0)
-    for name in _NUMBERS:
-        quantity = getattr(table, name)
-        if quantity is None or not quantity.std > 0.0:
+    for name, quantity in table:
+        if not isinstance(quantity, Quantity) or not quantity.std > 0.0:
             continue
         ends = []
         for sign in (1.0, 0.0, -1.0):

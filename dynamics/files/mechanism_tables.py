@@ -72,22 +72,17 @@ def _meaning(mechanism: Mechanism, one: Parameter) -> str:
 
 
 def _table(mechanism: Mechanism) -> type[MechanismTable]:
-    fields: dict[str, Any] = {
-        p.name: (
-            Annotated[Quantity, _range(p)] | None,
-            Field(default=None, description=_meaning(mechanism, p)),
-        )
-        for p in mechanism.parameters
-    }
+    fields: dict[str, Any] = {}
+    for p in mechanism.parameters:
+        field = Field(None, description=_meaning(mechanism, p))
+        fields[p.name] = Annotated[Quantity, _range(p)] | None, field
     made = create_model(mechanism.name, __base__=MechanismTable, **fields)
     made.mechanism = mechanism
     return made
 
 
 def _fields(mechanisms: Iterable[Mechanism]) -> dict[str, Any]:
-    return {
-        m.name: (_table(m) | None, Field(default=None, description=m.title)) for m in mechanisms
-    }
+    return {m.name: (_table(m) | None, Field(None, description=m.title)) for m in mechanisms}
 
 
 if TYPE_CHECKING:

@@ -24,11 +24,9 @@ if TYPE_CHECKING:
 def curves_in(found: SetupFile) -> list[str]:
     """Keys that give a body a flow curve."""
     return [
-        f"{key}.{name}"
-        for key, body in found.bodies.items()
-        for name in ("flow_curve", "hardening")
-        if getattr(body, name)
-    ]
+        f"{key}.{name}" for key, body in found.bodies.items()
+        for name in ("flow_curve", "hardening") if getattr(body, name)
+    ]  # fmt: skip
 
 
 def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: str) -> Scene:

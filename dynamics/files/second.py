@@ -142,7 +142,6 @@ def radius_error(pair: Pair, delta: float | Array, ratio: float) -> Array:
     # a film can leave no depth at all
     depth = np.maximum(np.asarray(delta, dtype=float), 1e-9 * pair.R)
     with unwarned():
-        one, two = (
-            law.loading(both, depth) for law in (LAWS["fitted"], similar(LAWS["fitted"], ratio))
-        )
+        laws = (LAWS["fitted"], similar(LAWS["fitted"], ratio))
+        one, two = (law.loading(both, depth) for law in laws)
     return np.asarray(two / one - 1.0)

@@ -50,7 +50,6 @@ DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
 FOLLOWING = "hardening"
 """Ours of metals with a flow curve; it comes first where there is one."""
 
-
 # limit: speeds at neither of which a mechanism that is refused acts [m/s]
 _OTHER_SPEEDS = (1e-3, 1e2)
 
@@ -145,12 +144,10 @@ class Setup:
     content: dict[str, Any]
     source: str
     numbers: RigNumbers
-    pair: Pair | None = None
-    """In place of the file's two bodies."""
+    pair: Pair | None = None  # in place of the file's two bodies
+    # numbers of the file that `[sweep]` lets run through values
     keys: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    """Numbers of the file that `[sweep]` lets run through values."""
-    rigs: tuple[Setup, ...] = ()
-    """The same with each combination of these, the first slowest."""
+    rigs: tuple[Setup, ...] = ()  # the same with each combination of these, the first slowest
 
     def __repr__(self) -> str:
         return f"Setup({self.name!r}, of {self.source}, by {', '.join(self.laws)})"
@@ -177,8 +174,6 @@ class Setup:
             return found
         plain = self.plain(law)
         found = self.acting(plain).read(plain, found)
-        if self.second is None:
-            return found
         spin = self._own_spin(plain, found.rebound_spin_rad_s)
         return replace(found, rebound_spin_rad_s=float(spin))
 
@@ -197,11 +192,6 @@ class Setup:
             table = kind.model_construct(**stated)
         mechanisms = self.file.mechanisms.model_copy(update={name: table})
         return replace(self, file=self.file.model_copy(update={"mechanisms": mechanisms}))
-
-    @property
-    def striker(self) -> str:
-        """Name of the striker."""
-        return self.file.striker
 
     @property
     def asked(self) -> Asked:
@@ -303,10 +293,8 @@ class Setup:
         if self.rigs:
             first, *others = (one.swept(law, change=change) for one in self.rigs)
             grid = np.meshgrid(*self.keys.values(), indexing="ij")
-            each = {
-                k: np.repeat(x.ravel(), len(first)) for k, x in zip(self.keys, grid, strict=True)
-            }
-            return Impacts({**each, **first.joined(*others).columns})
+            each = zip(self.keys, (np.repeat(x.ravel(), len(first)) for x in grid), strict=True)
+            return Impacts({**dict(each), **first.joined(*others).columns})
         plain = self.plain(law)
         given = combinations(self.sweep, plain, stated=self.stated)
         asked = self.asked_of_sweep
@@ -318,7 +306,7 @@ class Setup:
             return found
         columns, speed = ("approach_spin_rad_s", "rebound_spin_rad_s"), found["impact_speed_m_s"]
         relative, both = found["rebound_speed_m_s"], plain.striker.mass
-        own = np.full(len(found), self.file.strikers[self.striker].mass_kg.value)
+        own = np.full(len(found), self.file.strikers[self.file.striker].mass_kg.value)
         before, after = found["approach_tangential_m_s"], found["tangential_rebound_m_s"]
         return Impacts({
             **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns},
@@ -335,8 +323,7 @@ def read_setup(path: Path) -> Setup:
 def setup_of(content: dict[str, Any], *, source: str) -> Setup:
     """Check the content of a set-up file; `source` names it in errors, a line each."""
     plain, keys, files = rigs(content, SetupFile.model_fields, source=source)
-    count = math.prod(len(values) for values in keys.values())
-    setup = _alone(plain, source=source, rigs=count)
+    setup = _alone(plain, source=source, rigs=math.prod(map(len, keys.values())))
     try:
         each = tuple(_alone(one, source=source) for one in files)
     except InputError as wrong:

@@ -186,15 +186,11 @@ def mistakes_in(sweep: SweepTable, *, rigs: int) -> Iterator[Mistake]:
 
 @dataclass(frozen=True, slots=True)
 class Stated:
-    """How the file has the striker arrive, which a sweep changes in part.
+    """How the file has the striker arrive, which a sweep changes in part."""
 
-    `angle`: of a rod's axis or of a sphere's velocity [rad]; `height`: of the fall [m]; NaN where
-    the normal speed is stated; `gravity`: the file's [m/s^2]; a scene of two free spheres has none.
-    """
-
-    angle: float
-    height: float
-    gravity: float
+    angle: float  # of a rod's axis or of a sphere's velocity [rad]
+    height: float  # of the fall [m]; NaN where the normal speed is stated
+    gravity: float  # the file's [m/s^2]; a scene of two free spheres has none
 
 
 def swept_scenes(sweep: SweepTable, plain: Scene, *, stated: Stated) -> list[Scene]:

@@ -40,10 +40,7 @@ EXACT = ("contacts", "energy_residual", "momentum_residual")
 
 
 def impact_row(impact: Impact) -> dict[str, Any]:
-    """Return one impact as a row: its observables, counts and ending.
-
-    Half way through, where a budget ended it, it has no observables yet: they are nan.
-    """
+    """Return one impact as a row: observables, nan where a budget ended it, counts and ending."""
     numbers = {**impact.observables, "mean_force_N": impact.mean_force_N}
     return {
         **(numbers if impact.outcome.completed else dict.fromkeys(numbers, math.nan)),
@@ -56,20 +53,13 @@ def impact_row(impact: Impact) -> dict[str, Any]:
 def write_hdf5(
     path: Path, traces: Mapping[str, Trace], *, about: Mapping[str, str] | None = None
 ) -> None:
-    """Write histories and observables, one group for each law; units are in the names.
-
-    `about` are texts for people: name, materials, who measured it.
-    """
+    """Write histories and observables, a group a law, units in the names; `about`: for people."""
     stream = io.BytesIO()
     with h5py.File(stream, "w") as store:
-        for key, value in environment().items():
-            store.attrs[key] = value
-        for key, text in (about or {}).items():
-            store.attrs[key] = text
+        store.attrs.update({**environment(), **(about or {})})
         for law, trace in traces.items():
             group = store.create_group(law)
             for i, name in enumerate(HISTORY):
                 group.create_dataset(name, data=np.ascontiguousarray(trace.history[:, i]))
-            for name, value in impact_row(trace.impact).items():
-                group.attrs[name] = value
+            group.attrs.update(impact_row(trace.impact))
     write_file(path, stream.getvalue())

@@ -76,12 +76,9 @@ class _Sizes(NamedTuple):
 
 @dataclass(frozen=True)
 class Band:
-    """Standard deviations of an impact's numbers, by part and field of `Impact`.
+    """Standard deviations of an impact's numbers, by part and field of `Impact`."""
 
-    `parts`: change of each field by one standard deviation of the part: keys of the file, `LAW`,
-    then `METALS`.
-    """
-
+    # change of each field by one standard deviation of the part: keys of the file, `LAW`, `METALS`
     parts: Mapping[str, Mapping[str, float]]
 
     def std(self, name: str) -> float:
@@ -223,7 +220,7 @@ def _moved(quantity: Quantity, by: float) -> float:
 def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
     """Yield the quantities that stand with a standard deviation, and where they stand."""
     file, content = setup.file, setup.content
-    name = setup.striker
+    name = setup.file.striker
     tables: dict[tuple[str, ...], Any] = {
         (): file, ("target",): file.target, ("strikers", name): file.strikers[name],
         ("friction",): file.friction, ("impact",): file.impact,
@@ -309,10 +306,7 @@ def _moving(k: int, step: float) -> Change:
 def _of_inputs(
     setup: Setup, law: ContactLaw, names: Sequence[str], ended: Callable[[Setup], Any]
 ) -> dict[str, dict[str, Any]]:
-    """Change of each number by one standard deviation of each uncertain input, by its key.
-
-    `ended` gives a set-up's numbers by name.
-    """
+    """Change of the numbers that `ended` gives by one standard deviation of each input, by key."""
     parts = {}
     for key, share, up, down in _shifted(setup, law):
         high, low = ended(up), ended(down)
@@ -345,10 +339,7 @@ def _of_law(
 
 
 def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
-    """Return standard deviations along a sweep by one law, (n,) each, as those of a blow.
-
-    Where an impact did not end, there is none.
-    """
+    """Return standard deviations along a sweep by one law, (n,); none where a blow did not end."""
     if not all(found["outcome"] == "completed"):
         return {}
     if setup.rigs:

@@ -69,14 +69,12 @@ def lacks_of(setup: Setup, law: ContactLaw, found: Impact) -> dict[str, Lack]:
     if waves is not None:
         lacks["plate"] = Lack(FREE_PLATE, (waves,), "impact.support")
     return {
-        what: one
-        for what, one in lacks.items()
-        if all(end.outcome.completed for end in one.ends)
-        and any(
+        what: one for what, one in lacks.items()
+        if all(end.outcome.completed for end in one.ends) and any(
             sum(one.moved(name, found)) > _WORTH_A_LINE * getattr(found, name)
             for name in ("restitution", "residual_flat_m")
         )
-    }
+    }  # fmt: skip
 
 
 def checks(
@@ -97,11 +95,9 @@ def checks(
             _repeats(setup), _deep(setup, scene, found), _onset(setup, scene, found),
             flow_checks(setup, scene, found, lacks), _either(scene, found),
             flat_checks(setup, scene, found, lacks), _walls(scene, found),
-            _gravity(setup, scene, found),
-            _friction(setup, scene, found), _rod(scene, found),
-            _two_radii(setup), _edge(setup, scene, found),
-            _second(setup, scene, found), _bodies(setup, law),
-            _mechanisms(setup, law, found),
+            _gravity(setup, scene, found), _friction(setup, scene, found), _rod(scene, found),
+            _two_radii(setup), _edge(setup, scene, found), _second(setup, scene, found),
+            _bodies(setup, law), _mechanisms(setup, law, found),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
@@ -204,23 +200,21 @@ def _straight(scene: Scene) -> bool:
 
 
 def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    straight, inertia = _straight(scene), setup.file.strikers[setup.striker].inertia_kg_m2
+    straight, mu = _straight(scene), scene.friction.mu
+    inertia = setup.file.strikers[setup.file.striker].inertia_kg_m2
     if straight and inertia is not None:
-        key = f"strikers.{setup.striker}.inertia_kg_m2"
+        key = f"strikers.{setup.file.striker}.inertia_kg_m2"
         yield f"{key}, {inertia.value:g}, does nothing in a straight blow: nothing turns"
-    if straight and scene.friction.mu > 0.0:
+    if straight and mu > 0.0:
         yield (
-            f"friction, {scene.friction.mu:g}, does nothing in a straight blow by these laws; "
+            f"friction, {mu:g}, does nothing in a straight blow by these laws; "
             "dentscope case solves the contact with it"
         )
-    elif not straight and scene.friction.mu > 0.0:
-        if scene.friction.mu > _RUBS:
-            mu = scene.friction.mu
+    elif not straight and mu > 0.0:
+        if mu > _RUBS:
             yield f"friction, {mu:g}, is more than metals have; {mu:g} % would be {mu / 100.0:g}"
-        without = repeated(
-            setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
-        )
-        yield f"without friction: {effect(without, found)}"
+        smooth = scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
+        yield f"without friction: {effect(repeated(setup, smooth), found)}"
     elif not straight and setup.file.friction.coefficient is None:
         yield "friction.coefficient is not stated: nothing acts along the flat"
 
@@ -256,7 +250,7 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
 
 
 def _two_radii(setup: Setup) -> Iterator[str]:
-    ball = setup.file.strikers[setup.striker]
+    ball = setup.file.strikers[setup.file.striker]
     if ball.shape == "sphere" and ball.radius_m is not None:
         tip, body = ball.tip_radius_m, ball.radius_m
         if abs(tip.value - body.value) > max(tip.std, body.std):
@@ -279,8 +273,7 @@ def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         )
     if math.isfinite(scene.force.edge):
         return
-    ends = replace(scene.force, edge=scene.striker.radius)
-    ended = repeated(setup, scene.with_(force=ends))
+    ended = repeated(setup, scene.with_(force=replace(scene.force, edge=striker.radius)))
     if abs(ended.restitution / found.restitution - 1.0) > _WORTH_A_LINE:
         yield (
             f"the tip's curvature is taken to go on; ended at the rod's side (impact.finite_tip): "
@@ -292,7 +285,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     second = setup.second
     if second is None:
         return
-    ball = setup.file.strikers[setup.striker]
+    ball = setup.file.strikers[setup.file.striker]
     yield (
         f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
         f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other, "
@@ -350,7 +343,7 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
         if not (flows or body.rigid or body.strength or file.target.law == "elastic"):
             yield f"{key}: {unlisted(body.material)}without Sy_Pa it stays elastic"
-    name, second = setup.striker, file.target
+    name, second = setup.file.striker, file.target
     ball = file.strikers[name]
     yield from _mass(
         f"strikers.{name}", ball.mass_kg, ball.body_radius, ball.density_kg_m3, ball.length

@@ -17,23 +17,15 @@ from ..surface import Imprint
 
 
 class LeftSurface(NamedTuple):
-    """What stays in one body.
+    """What stays in one body."""
 
-    - `body`: the tip, `sphere`, or what is struck, `flat`; also where that is a second sphere.
-    - `place`: (n,) along the motion from the deepest place [m].
-    - `height`, `std`: (n,) over the surface that was [m], below 0 where it is pressed in.
-    - `radius`: of the contact at its deepest [m].
-    - `depth`: what stays at the deepest place [m].
-    - `shaped`: whether the shape between is known: else the surface is given at its deepest alone.
-    """
-
-    body: Body
-    place: Array
-    height: Array
-    std: Array
-    radius: float
-    depth: float
-    shaped: bool
+    body: Body  # the tip, `sphere`, or what is struck, `flat`, also where that is a second sphere
+    place: Array  # (n,) along the motion from the deepest place [m]
+    height: Array  # (n,) over the surface that was [m], below 0 where it is pressed in
+    std: Array  # (n,) [m]
+    radius: float  # of the contact at its deepest [m]
+    depth: float  # what stays at the deepest place [m]
+    shaped: bool  # the shape between is known: else the surface is given at its deepest alone
 
 
 def surfaces_left(
@@ -45,8 +37,7 @@ def surfaces_left(
     at an edge, or that is like no published one, is not known. `std` gives the standard deviation
     of a field of `Impact`; without it no error is told.
     """
-    marks = found.spot.imprints
-    mark = max(marks, key=lambda one: one.peak, default=None)
+    mark = max(found.spot.imprints, key=lambda one: one.peak, default=None)
     peak = found.spot.tip_peak if mark is None else mark.peak
     if not peak > 0.0 or not found.residual_m > 0.0:
         return []

@@ -27,7 +27,6 @@ SWEPT = (
 )  # fmt: skip
 """Observables that the picture of a sweep shows, where they are anything."""
 
-
 CONDITIONS = {
     "impact_speed_m_s": "impact speed [m/s]", "drop_height_m": "drop height [m]",
     "angle_deg": "angle [degrees]", "friction": "friction [-]", "mass_kg": "mass [kg]",
@@ -67,10 +66,9 @@ def draw_sweep(
     place = tuple(slice(None) if name == across else 0 for name in swept)
     rows = np.arange(math.prod(lengths)).reshape(lengths)[place]
     shown = [
-        name
-        for name in SWEPT
+        name for name in SWEPT
         if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
-    ]
+    ]  # fmt: skip
     made, axes = panels(len(shown))
     first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
@@ -104,21 +102,20 @@ def draw_sweep(
 
 def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts]) -> list[str]:
     """Return the conditions of a sweep along which nothing that the picture shows changes."""
+    if not any((found["outcome"] == "completed").any() for found in curves.values()):
+        return []
     shape = [len(values) for values in swept.values()]
     tables = [found[name].reshape(shape) for found in curves.values() for name in SWEPT]
 
-    ended = any((found["outcome"] == "completed").any() for found in curves.values())
-
     def idle(axis: int) -> bool:
-        return ended and all(
+        return all(
             np.allclose(t, t.take([0], axis), rtol=_NONE, atol=0.0, equal_nan=True) for t in tables
         )
 
     return [
-        name
-        for axis, (name, values) in enumerate(swept.items())
+        name for axis, (name, values) in enumerate(swept.items())
         if len(set(values)) > 1 and idle(axis)
-    ]
+    ]  # fmt: skip
 
 
 def _by_ratio(values: Sequence[float]) -> bool:

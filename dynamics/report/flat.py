@@ -67,9 +67,7 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"its depth is {_THICK * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
             f"{a * 1e3:.2g} mm"
         )
-    else:
-        if not a > 0.0:
-            return
+    elif a > 0.0:
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
 
 

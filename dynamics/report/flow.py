@@ -51,7 +51,7 @@ def lacking(setup: Setup, scene: Scene, found: Impact) -> dict[str, Lack]:
     radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
         return {}
-    body = setup.file.bodies[weaker_table(setup.file, setup.striker)]
+    body = setup.file.bodies[weaker_table(setup.file, setup.file.striker)]
     said = setup.content.get("mechanisms", {})
     follows = follows_flow(scene.law) and not scene.pair.perfectly_plastic
     wanted = {

@@ -21,14 +21,11 @@ _PRESSURE_POINTS = 60
 
 @dataclass(frozen=True)
 class FirstYield:
-    """Where a body first yields: Hertz up to the critical depth (Eqs. 1.16, 1.19).
+    """Where a body first yields: Hertz up to the critical depth (Eqs. 1.16, 1.19)."""
 
-    `depth`: approach [m]; `load`: force [N]; `work`: work to there [J].
-    """
-
-    depth: float
-    load: float
-    work: float
+    depth: float  # approach [m]
+    load: float  # [N]
+    work: float  # to there [J]
 
     def speed(self, mass: float) -> float:
         """Normal speed at which an effective mass [kg] just makes it yield [m/s]."""

@@ -29,7 +29,6 @@ AGAINST_TIME = (
 )
 """Column, axis, scale, and what counts as nothing at all [SI]."""
 
-
 # limit: time from which histories are in ms [s]; below, five digits of a tick would overlap
 _SHORT = 1e-4
 
@@ -42,10 +41,9 @@ def picture(blow: Blow, *, exact: bool = False) -> Figure:
     """
     traces = list(blow.traces.items())
     shown = [
-        panel
-        for panel in AGAINST_TIME
-        if any(np.ptp(trace.column(panel[0])) > panel[3] for _, trace in traces)
-    ]
+        (name, label, scale) for name, label, scale, nothing in AGAINST_TIME
+        if any(np.ptp(trace.column(name)) > nothing for _, trace in traces)
+    ]  # fmt: skip
     law, left = _left(blow, exact=exact)
     made, axes = panels(2 + bool(left) + len(shown))
     _draw_rig(axes[0], blow, left)
@@ -85,7 +83,8 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
         axis.fill(*(scale * outline).T, facecolor=colour, edgecolor="0.35", lw=0.8)
     for surface in left[:1]:
         axis.hlines(0.0, -scale * surface.radius, scale * surface.radius, color="C3", lw=2.5)
-    w, body = scale * rig.window, setup.file.strikers[setup.striker]
+    w, name = scale * rig.window, setup.file.striker
+    body = setup.file.strikers[name]
     approach = setup.scene(blow.laws[0]).approach
     direction = np.array([approach.tangential, -approach.speed])
     direction *= 0.5 * w / np.linalg.norm(direction)
@@ -94,7 +93,7 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
     speed = math.hypot(approach.tangential, approach.speed)
     size = f"R {_length(body.tip_radius_m.value)}"
     size = size if body.shape == "sphere" else f"tip {size}, {_length(body.length)}"
-    told = ["to scale", f"{setup.striker}: {size}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s"]
+    told = ["to scale", f"{name}: {size}, {_mass(body.mass_kg.value)}, {speed:.3g} m/s"]
     second = setup.second
     if second is not None:
         kind = "sphere" if second.radius > 0.0 else "seat"
@@ -117,7 +116,7 @@ def _draw_rig(axis: Any, blow: Blow, left: Sequence[LeftSurface]) -> None:
 
 def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> None:
     names = {"flat": "flat" if blow.setup.second is None else "what is struck",
-             "sphere": blow.setup.striker}  # fmt: skip
+             "sphere": blow.setup.file.striker}  # fmt: skip
     scale, unit = _scale(2.0 * left[0].radius)
     for surface, colour in zip(left, ("C0", "C1"), strict=False):
         name = f"{names[surface.body]}: {_length(surface.depth)} deep"
@@ -165,10 +164,10 @@ def _draw_curves(
             depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,
             **style,
         )  # fmt: skip
-        for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
+        for axis, (name, _, scale) in zip(axes[1:], shown, strict=True):
             axis.plot(per_s * trace.column("time_s"), scale * trace.column(name), **style)
     axes[0].set(xlabel=depth_label, ylabel=force_label)
-    for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
+    for axis, (_, label, _) in zip(axes[1:], shown, strict=True):
         axis.set(xlabel=f"time [{time}]", ylabel=label)
     for axis in axes:
         axis.grid(alpha=0.3)

@@ -14,25 +14,17 @@ if TYPE_CHECKING:
 
 
 class RigShape(NamedTuple):
-    """Outlines in the plane of the motion, the touch at the origin, the normal along y [m].
+    """Outlines in the plane of the motion, the touch at the origin, the normal along y [m]."""
 
-    `striker`, `struck`: (n, 2) corners; `window`: half the width that shows the rig; `thickness`:
-    of the flat; infinite where the file states none, or a sphere is struck.
-    """
-
-    striker: Array
-    struck: Array
-    window: float
-    thickness: float
+    striker: Array  # (n, 2) corners
+    struck: Array  # (n, 2)
+    window: float  # half the width that shows the rig
+    thickness: float  # of the flat; infinite where the file states none, or a sphere is struck
 
 
 def rig_shape(setup: Setup, place: Array, height: Array) -> RigShape:
-    """Return the outlines of a blow's bodies.
-
-    `place` and `height` (n,) are places along the surface that is struck and its height over the
-    one that was [m].
-    """
-    body, target = setup.file.strikers[setup.striker], setup.file.target
+    """Return a blow's outlines; `height` (n,) at `place` is over the surface that was there [m]."""
+    body, target = setup.file.strikers[setup.file.striker], setup.file.target
     R, r = body.tip_radius_m.value, body.body_radius
     rod = body.shape == "rod"
     window = 2.6 * max(R, 2.0 * r if rod else r)
