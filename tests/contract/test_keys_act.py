@@ -12,9 +12,7 @@ import dentscope.reduce
 import made_blows
 import pytest
 import tomlkit
-import typer.main
 from dentscope.cli import run
-from dentscope.cli.app import app
 from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError, InputErrors
 from dentscope.core.inputs.templates import CASE, INVERSE, template
@@ -24,6 +22,8 @@ from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.models import law_named
 from dentscope.reduce.output.row import Row
 from dentscope.start.ball_file import read_ball
+from made_commands import COMMANDS
+from made_files import with_key
 
 BALL = 'name = "ball"\n' + made_blows.BALL.replace("7870", "7870\nthickness_m = 0.03").replace(
     "[impact]", "[friction]\ncoefficient = 0.1\n[impact]\nangle_deg = 60"
@@ -198,16 +198,6 @@ _TEXTS = ("name", "format", "description", "source", "licence", "material")
 TWIN = "[strikers.NAME.hardening]"
 
 
-def with_key(text, table, name, value):
-    place = table.strip("[]").replace("NAME", "ball")
-    content = tomllib.loads(text)
-    table_of = content
-    for part in filter(None, place.split(".")):
-        table_of = table_of.setdefault(part, {})
-    table_of.update(tomllib.loads(f"{name} = {value}"))
-    return content
-
-
 def told(content, tmp_path):
     setup = setup_of(content, source=str(tmp_path / "ball.toml"))
     found = blow_of(setup, [law_named(name) for name in setup.laws[:1]])
@@ -359,18 +349,6 @@ def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_p
     assert told[0] != told[1] or refused
 
 
-def commands(command, name=""):
-    context = command.context_class(command)
-    for last in getattr(command, "list_commands", lambda _: ())(context):
-        found = command.get_command(context, last)
-        yield from commands(found, f"{name} {last}".strip())
-    if not hasattr(command, "list_commands"):
-        yield name, command
-
-
-COMMANDS = dict(commands(typer.main.get_command(app)))
-
-
 @cache
 def read_by_reductions():
     folder = Path(inspect.getfile(dentscope.reduce)).parent
@@ -382,18 +360,21 @@ def read_by_reductions():
     }
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_reads_every_option(name):
-    work = inspect.unwrap(COMMANDS[name].callback)
+@pytest.mark.parametrize(
+    "words", [w for w, c in COMMANDS.items() if not hasattr(c, "list_commands")], ids=" ".join
+)
+def test_a_command_reads_every_option(words):
+    command = COMMANDS[words]
+    work = inspect.unwrap(command.callback)
     tree = ast.parse(textwrap.dedent(inspect.getsource(work)))
     read = {
         node.id for node in ast.walk(tree)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
     }  # fmt: skip
-    known = set(inspect.signature(COMMANDS[name].callback).parameters)
-    if name.startswith("reduce "):
+    known = set(inspect.signature(command.callback).parameters)
+    if words[0] == "reduce":
         read |= read_by_reductions() | set(Row.model_fields)  # the row: a column of trials.csv each
-    assert [p.name for p in COMMANDS[name].params if p.name in known - read] == []
+    assert [p.name for p in command.params if p.name in known - read] == []
 
 
 @pytest.mark.parametrize(

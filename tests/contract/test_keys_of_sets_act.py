@@ -24,7 +24,7 @@ from dentscope.discrepancy.rank import baseline_situations
 from dentscope.dynamics.mechanisms import MECHANISMS
 from dentscope.recordings import read
 from dentscope.start.case_file import read_case, read_pair
-from made_files import put
+from made_files import put, with_key
 
 ROD = """
 format = "recording-set/1"
@@ -35,7 +35,7 @@ nu = 0.3
 Sy_Pa = { value = 3.05e8, std = 3e7 }
 density_kg_m3 = 7870
 thickness_m = 0.03
-[strikers.one]
+[strikers.ball]
 shape = "rod"
 tip_radius_m = 0.0088
 radius_m = 0.0088
@@ -54,9 +54,9 @@ permanent_depth_m = 1e-6
 dent_diameter_m = 1e-5
 """
 ROD_TRIALS = """trial,striker,angle_deg,drop_height_m,restitution,permanent_depth_m,dent_diameter_m
-1,one,90,0.05,0.53,4.9e-5,1.9e-3
-2,one,60,0.20,0.46,8.5e-5,2.5e-3
-3,one,60,0.45,0.42,1.2e-4,3.0e-3
+1,ball,90,0.05,0.53,4.9e-5,1.9e-3
+2,ball,60,0.20,0.46,8.5e-5,2.5e-3
+3,ball,60,0.45,0.42,1.2e-4,3.0e-3
 """
 BALL = (
     ROD.replace('shape = "rod"', 'shape = "sphere"').replace('"rods"', '"balls"')
@@ -64,9 +64,9 @@ BALL = (
 )  # fmt: skip
 HIDDEN = ROD.replace("Sy_Pa = { value = 1.7e9, std = 1e8 }", "Sy_Pa = { value = 1e8, std = 1e7 }")
 TRIALS_OF_A_BALL = """trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m
-1,one,90,1.0,0.53,1.4e-5
-2,one,60,4.0,0.40,4.5e-5
-3,one,90,8.0,0.33,8.2e-5
+1,ball,90,1.0,0.53,1.4e-5
+2,ball,60,4.0,0.40,4.5e-5
+3,ball,90,8.0,0.33,8.2e-5
 """
 ON_A_FLAT = BALL.replace('"balls"', '"normal balls"').replace("thickness_m = 0.03\n", "")
 ON_A_BALL = ON_A_FLAT.replace("[target]", '[target]\nshape = "sphere"\nradius_m = 0.02')
@@ -140,14 +140,8 @@ BESIDE = {("[target]", "flow_curve"), ("[strikers.NAME]", "flow_curve")}
 """Names of files, which tests of their own look at."""
 
 
-def changed(text, table, name, value):
-    content = tomlkit.parse(text)
-    table_of = content
-    for part in filter(None, table.strip("[]").replace("NAME", "one").split(".")):
-        table_of = table_of[part]
-    for key, found in tomllib.loads(f"{name} = {value}").items():
-        table_of[key] = found
-    return tomlkit.dumps(content)
+def changed(text, *key):
+    return tomlkit.dumps(with_key(text, *key))
 
 
 def write(text, folder):

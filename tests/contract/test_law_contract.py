@@ -122,19 +122,22 @@ def test_unloading_starts_at_the_peak_and_ends_at_the_residual_depth(law, pair):
     assert np.all(np.diff(law.unloading(pair, d, peak)) >= 0.0)
 
 
+def creates_energy(law, pair, peak):
+    """Over a cycle to a peak; in depth^(1/2), which suits the 3/2 powers."""
+    left = float(sum(law.residual(pair, peak)))
+    y = np.linspace(0.0, 1.0, 4001)
+    d, back = peak * y**2, left + (peak - left) * y**2
+    spent = np.trapezoid(law.loading(pair, d), d)
+    return np.trapezoid(law.unloading(pair, back, peak), back) > spent * (1.0 + 1.5e-3)
+
+
 @every_law
 @every_pair
 def test_no_cycle_creates_energy(law, pair):
-    """From peaks below first yield to deep ones; in depth^(1/2), which suits the 3/2 powers."""
-    y = np.linspace(0.0, 1.0, 4001)
+    """From peaks below first yield to deep ones."""
     onset = critical_depth(pair)
-    for peak in (*onset * np.array([0.5, 1.02, 1.3, 2.0, 4.0, 8.0, 30.0]), 0.01 * pair.R):
-        d = peak * y**2
-        spent = np.trapezoid(law.loading(pair, d), d)
-        left = float(sum(law.residual(pair, peak)))
-        d = left + (peak - left) * y**2
-        gained = np.trapezoid(law.unloading(pair, d, peak), d)
-        assert gained <= spent * (1.0 + 1.5e-3), peak / onset
+    peaks = *onset * np.array([0.5, 1.02, 1.3, 2.0, 4.0, 8.0, 30.0]), 0.01 * pair.R
+    assert [peak / onset for peak in peaks if creates_energy(law, pair, peak)] == []
 
 
 @every_law
@@ -239,15 +242,9 @@ def test_a_combination_unloads_from_its_peak_to_its_residual_depth(loading, pair
 @pytest.mark.parametrize("pair", OPPOSITE.values(), ids=OPPOSITE)
 @pytest.mark.parametrize(("loading", "other"), NAMED, ids="+".join)
 def test_no_cycle_of_the_thesis_combinations_creates_energy(loading, other, pair):
-    law = LAWS[loading].with_unloading(LAWS[other])
-    y = np.linspace(0.0, 1.0, 4001)
+    law, onset = LAWS[loading].with_unloading(LAWS[other]), critical_depth(pair)
     for times in (2.0, 8.0, 30.0, 110.0):
-        peak = times * critical_depth(pair)
-        d = peak * y**2
-        spent = np.trapezoid(law.loading(pair, d), d)
-        left = float(sum(law.residual(pair, peak)))
-        back = left + (peak - left) * y**2
-        assert np.trapezoid(law.unloading(pair, back, peak), back) <= spent * (1.0 + 1.5e-3)
+        assert not creates_energy(law, pair, times * onset), times
 
 
 def test_a_law_of_ones_own_that_is_written_anew_under_its_name_is_joined_anew():

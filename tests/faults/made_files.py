@@ -1,6 +1,7 @@
 """Files of the tests: written in a line, read as rows."""
 
 import csv
+import tomllib
 
 
 def put(path, text):
@@ -29,3 +30,9 @@ def changed(content, changes):
         else:
             content[first] = value
     return content
+
+
+def with_key(text, table, name, value):
+    """Tables of a file with one key set; the striker of a table's NAME is the ball."""
+    added = tomllib.loads(f"{table.replace('NAME', 'ball')}\n{name} = {value}")
+    return changed(tomllib.loads(text), added)

@@ -20,20 +20,18 @@ def sphere(diameter: float, density: float) -> Striker:
     return Striker(mass=density * volume, tip_radius=0.5 * diameter)
 
 
-def terminal_speed(striker, *, fall):
-    """Speed of a striker after a fall in water from rest, many times the way it takes."""
-    return -float(flown(striker, WATER, normal=0.0, rise=-fall).normal)
-
-
-def test_terminal_speed_of_a_quartz_grain_in_water() -> None:
-    # Rushton, Ward and Holdich, Solid-Liquid Filtration and Separation Technology (1996): 4.06 mm/s
-    assert terminal_speed(sphere(70e-6, 2600.0), fall=1e-4) == pytest.approx(0.00406, rel=0.01)
-
-
-def test_terminal_speed_where_stokes_holds() -> None:
-    # v = g d^2 (rho_s - rho)/(18 mu), Re = 1.5e-4
-    found = terminal_speed(sphere(5e-6, 2600.0), fall=1e-9)
-    assert found == pytest.approx(9.81 * 25e-12 * 1600.0 / 18e-3, rel=1e-4)
+@pytest.mark.parametrize(
+    ("diameter", "fall", "speed", "rel"),
+    [   # Rushton, Ward and Holdich, Solid-Liquid Filtration and Separation Technology (1996)
+        (70e-6, 1e-4, 0.00406, 0.01),
+        # Stokes, v = g d^2 (rho_s - rho)/(18 mu), Re = 1.5e-4
+        (5e-6, 1e-9, 9.81 * 25e-12 * 1600.0 / 18e-3, 1e-4)],
+    ids=["quartz", "stokes"],
+)  # fmt: skip
+def test_terminal_speed_of_a_grain_in_water(diameter, fall, speed, rel) -> None:
+    """After a fall from rest, many times the way that it takes."""
+    found = flown(sphere(diameter, 2600.0), WATER, normal=0.0, rise=-fall)
+    assert -float(found.normal) == pytest.approx(speed, rel=rel)
 
 
 def test_a_ping_pong_balls_drop() -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-import typer
 from dentscope import __version__, fem
 from dentscope.cli import app as assembly
 from dentscope.cli import doctor
@@ -17,6 +16,7 @@ from dentscope.cli.doctor import EnvironmentFinding
 from dentscope.cli.shared.terminal import parts, say, show_table, tell_first_use
 from dentscope.core import Ending, InputError, Outcome
 from dentscope.core.inputs.templates import CASE
+from made_commands import COMMANDS
 from made_files import put
 from made_processes import python
 from rich.console import Console
@@ -24,16 +24,6 @@ from rich.console import Console
 
 def letters(text: str) -> str:
     return "".join(text.split())
-
-
-def commands(command, *name):
-    """Every command with its words, beginning with the program itself."""
-    yield name, command
-    for word, below in getattr(command, "commands", {}).items():
-        yield from commands(below, *name, word)
-
-
-COMMANDS = dict(commands(typer.main.get_command(assembly.app)))
 
 
 @pytest.mark.parametrize("width", [60, 80, 120])

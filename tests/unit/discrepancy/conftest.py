@@ -22,7 +22,8 @@ from dentscope.discrepancy.rank import Ranking, Screened
 from dentscope.dynamics.mechanisms.base import Parameter, Surroundings
 from dentscope.recordings.bench import Bench
 
-NONE = np.zeros((0, 0))
+BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
+        "inertia_kg_m2": 1.2e-6}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ def problem(
         np.ones(m, dtype=np.intp),
     )  # fmt: skip
     J = np.zeros((m, 0)) if derivative is None else np.array(derivative, dtype=float)
-    more.setdefault("rig", rig_of(ball={"length_m": 0.0, "tip_radius_m": 0.01, "mass_kg": 0.03}))
+    more.setdefault("rig", rig_of(ball=BALL))
     return Problem(tuple(condition(v) for v in speeds), cells, J, **more)
 
 
@@ -174,11 +175,7 @@ def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) 
 
 @pytest.fixture(scope="session")
 def toy() -> SimpleNamespace:
-    return SimpleNamespace(
-        rig_of=rig_of,
-        Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
-        screened_of=screened_of, ranking_of=ranking_of,
-    )  # fmt: skip
+    return SimpleNamespace(**globals())
 
 
 def balls_on_plate(

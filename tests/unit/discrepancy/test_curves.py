@@ -14,6 +14,7 @@ from dentscope.dynamics import Approach, Striker, scene_of
 from dentscope.dynamics import traced as trace_of
 from dentscope.models import LAWS
 from dentscope.recordings import read
+from made_sets import BALL, made_set
 
 T, PEAK = 2e-4, 3000.0
 
@@ -64,11 +65,10 @@ def test_profile_of_a_cap() -> None:
 @pytest.fixture
 def traced(tmp_path: Path) -> Path:
     """One ball, traces of the baseline's own impacts at a tenth of the contact per sample."""
-    ball, flat = Material(E=208e9, nu=0.3, Sy=2e9), Material(E=206e9, nu=0.29, Sy=3e8)
+    ball, flat = (Material(E=2e11, nu=0.3, Sy=Sy) for Sy in (2e9, 3e8))
     (tmp_path / "traces").mkdir()
-    rows = ["trial,striker,angle_deg,impact_speed_m_s"]
-    rng = np.random.default_rng(3)
-    for k, v in enumerate((0.5, 1.0, 2.0)):
+    rng, speeds = np.random.default_rng(3), (0.5, 1.0, 2.0)
+    for k, v in enumerate(speeds):
         striker = Striker(mass=0.004, tip_radius=0.005)
         one = scene_of(
             LAWS["fitted"], sphere=ball, flat=flat, striker=striker, approach=Approach(v)
@@ -81,14 +81,10 @@ def traced(tmp_path: Path) -> Path:
         force = force + 0.002 * force.max() * rng.standard_normal(len(grid))
         lines = [f"{a:.9g},{b:.6g}" for a, b in zip(grid, force, strict=True)]
         (tmp_path / "traces" / f"t{k}.csv").write_text("time_s,force_N\n" + "\n".join(lines))
-        rows.append(f"t{k},ball,90,{v}")
-    (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n")
-    (tmp_path / "set.toml").write_text(
-        'format = "recording-set/1"\n[target]\nshape = "flat"\nE_Pa = 2.06e11\nnu = 0.29\n'
-        'Sy_Pa = { value = 3e8, std = 1.2e7 }\n[strikers.ball]\nshape = "sphere"\n'
-        "tip_radius_m = 0.005\nmass_kg = 0.004\nE_Pa = 2.08e11\nnu = 0.3\nSy_Pa = 2e9\n"
-        "[noise]\nforce_N_relative = 0.002\n"
-    )
+    made_set(
+        tmp_path, BALL + "Sy_Pa = 2e9\n", target="Sy_Pa = { value = 3e8, std = 1.2e7 }\n",
+        noise="force_N_relative = 0.002\n", angle_deg=[90] * 3, impact_speed_m_s=speeds,
+    )  # fmt: skip
     return tmp_path
 
 

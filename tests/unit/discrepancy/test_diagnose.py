@@ -190,17 +190,12 @@ def test_a_second_blow_meets_the_crater_of_the_first(tmp_path, set_of_balls):
 
 def test_repeats_that_scatter_beyond_their_stated_noise_are_all_kept(tmp_path: Path) -> None:
     """Two bounces each on a thick and a thin plate under one name: no majority is an outlier."""
-    (tmp_path / "set.toml").write_text(
-        'format = "recording-set/1"\nname = "plates"\n'
-        '[target]\nmaterial = "wood"\nshape = "flat"\nlaw = "measured-restitution"\n'
-        '[strikers.ball]\nmaterial = "steel"\nshape = "sphere"\n'
-        "tip_radius_m = 0.005\nmass_kg = 0.004\n"
-    )
-    e = np.array([0.4, 0.41, 0.6, 0.61])
-    rows = ["trial,striker,angle_deg,impact_speed_m_s,restitution,restitution_std"]
-    rows += [f"{k},ball,90,2.0,{value},0.001" for k, value in enumerate(e)]
-    (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n")
-    cells = problem_of(read(tmp_path)).cells
+    e = [0.4, 0.41, 0.6, 0.61]
+    given = made_set(
+        tmp_path, target='law = "measured-restitution"\n', angle_deg=[90] * 4,
+        impact_speed_m_s=[2.0] * 4, restitution=e, restitution_std=[0.001] * 4,
+    )  # fmt: skip
+    cells = problem_of(given).cells
     assert cells.count.tolist() == [4]
     assert cells.value == pytest.approx(np.mean(e), rel=1e-9)
 

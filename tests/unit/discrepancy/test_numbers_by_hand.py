@@ -203,13 +203,9 @@ def test_angles_from_the_normal_are_the_complements_at_one_normal_speed(name) ->
     assert not [m for m in upright.wrong_numbers if m.key == "angle_deg"]
 
 
-BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
-        "inertia_kg_m2": 1.2e-6}  # fmt: skip
-
-
 def test_a_speed_within_a_twentieth_of_a_tested_one_is_not_proposed(toy) -> None:
     def speeds(*tested):
-        given = toy.problem([0.0] * len(tested), speeds=tested, rig=toy.rig_of(ball=BALL))
+        given = toy.problem([0.0] * len(tested), speeds=tested)
         return [c.condition.speed for c in candidates_of(given)]
 
     assert speeds(1.0, 1.049) == []
@@ -218,7 +214,7 @@ def test_a_speed_within_a_twentieth_of_a_tested_one_is_not_proposed(toy) -> None
 
 
 def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
-    given = toy.problem([0.0, 0.0], speeds=[1.0, 1.0], rig=toy.rig_of(ball=BALL))
+    given = toy.problem([0.0, 0.0], speeds=[1.0, 1.0])
     lean = tuple(toy.condition(1.0, angle=math.radians(a)) for a in (40.0, 80.0))
     found = candidates_of(replace(given, conditions=lean))
     seen = [round(math.degrees(c.condition.angle), 6) for c in found]

@@ -39,8 +39,7 @@ def library(toy):
 
 
 def ranked(toy, library, data, derivative=None):
-    given = toy.problem(data, derivative=np.zeros((8, 0)) if derivative is None else derivative)
-    simulator = toy.Simulator(given)
+    simulator = toy.Simulator(toy.problem(data, derivative=derivative))
     return simulator, rank(simulator, mechanisms=library)
 
 
@@ -96,10 +95,8 @@ def test_what_a_size_multiplies_may_be_off(toy) -> None:
 
 def test_what_would_rest_on_an_assumed_modulus_is_excluded(toy, library) -> None:
     waves = toy.Effect("waves", RISING, rests_on=("target",))
-    given = toy.problem(
-        0.5 * np.array(RISING), derivative=np.zeros((8, 0)),
-        without_modulus={"target": ("target",), "striker": ()},
-    )  # fmt: skip
+    unstated = {"target": ("target",), "striker": ()}
+    given = toy.problem(0.5 * np.array(RISING), without_modulus=unstated)
     found = rank(toy.Simulator(given), mechanisms=(*library, waves))
     assert found.excluded["waves"] == (
         "its numbers would rest on the modulus of target, which is not stated"
@@ -138,19 +135,23 @@ def test_what_lost_its_weight_no_longer_speaks_for_a_mechanism(toy, library) -> 
         assert s.log_bayes == pytest.approx(expected)
 
 
-def test_what_two_mechanisms_do_to_each_other_is_part_of_a_pair(toy, library) -> None:
-    """Beside the sum of two effects the bench adds the product of their sizes times a shape."""
-    mutual = np.array([5.0, -5.0] * 4)
+def together(toy, data, mutual):
+    """A bench that adds to the sum of two effects the product of their sizes times a shape."""
 
-    class Bench(toy.Simulator):
+    class Together(toy.Simulator):
         def predict(self, mechanisms, points):
-            plain = super().predict(mechanisms, points)
-            if len(mechanisms) < 2:
-                return plain
-            sizes = [np.prod([p.values[m.name]["size"] for m in mechanisms]) for p in points]
-            return plain + np.array(sizes)[:, None] * mutual
+            found = super().predict(mechanisms, points)
+            for row, point in zip(found, points, strict=True):
+                both = [point.values[m.name]["size"] for m in mechanisms]
+                row += math.prod(both) * np.array(mutual) if len(both) == 2 else 0.0
+            return found
 
-    bench = Bench(toy.problem(0.2 * np.array(RISING), derivative=np.zeros((8, 0))))
+    return Together(toy.problem(data))
+
+
+def test_what_two_mechanisms_do_to_each_other_is_part_of_a_pair(toy, library) -> None:
+    mutual = np.array([5.0, -5.0] * 4)
+    bench = together(toy, 0.2 * np.array(RISING), mutual)
     found = rank(bench, mechanisms=library)
     one, two = (
         next(s for s in found.screened if s.mechanism.name == n) for n in ("rising", "bent")
@@ -195,17 +196,8 @@ def test_two_that_decide_together_or_lead_are_fitted_whatever_their_sum(
     effects = (
         toy.Effect("rising", RISING, aslant=aslant), toy.Effect("low", shape, aslant=aslant)
     )  # fmt: skip
-
-    class Together(toy.Simulator):
-        def predict(self, mechanisms, points):
-            found = super().predict(mechanisms, points)
-            for row, point in zip(found, points, strict=True):
-                both = [point.values[m.name]["size"] for m in mechanisms]
-                row += math.prod(both) * np.array(BENT) if len(both) == 2 else 0.0
-            return found
-
     data = 0.5 * np.array(RISING) + 0.8 * np.array(shape) + 0.4 * np.array(BENT)
-    simulator = Together(toy.problem(data, derivative=np.zeros((8, 0))))
+    simulator = together(toy, data, BENT)
     pairs = with_pairs(simulator, rank(simulator, mechanisms=effects)).pairs
     assert [pair.name for pair in pairs] == ["rising+low"] * fitted
 
@@ -245,23 +237,19 @@ def test_no_pairs_where_nothing_that_has_a_name_was_fitted(toy) -> None:
 
 
 SPEEDS = [1.0, np.e, np.e**2, np.e**3]
-BALL = {"length_m": 0.0, "tip_radius_m": 0.01, "mass_kg": 0.1}
 
 
 @pytest.fixture
 def located(toy):
-    rig = toy.rig_of(ball=BALL)
-
     def found(residual, level=0.95):
-        given = toy.problem(residual, speeds=SPEEDS, rig=rig)
+        given = toy.problem(residual, speeds=SPEEDS)
         return locate(given, toy.fit_of(residual), np.random.default_rng(1), level=level)
 
     return found
 
 
-def test_only_what_varies_is_a_covariate(toy, located) -> None:
-    rig = toy.rig_of(ball=BALL)
-    found = covariates(toy.problem([0.0] * 4, speeds=SPEEDS, rig=rig))
+def test_only_what_varies_is_a_covariate(toy) -> None:
+    found = covariates(toy.problem([0.0] * 4, speeds=SPEEDS))
     # ln v = 0 ... 3: mean 3/2, standard deviation sqrt(5)/2
     assert list(found) == ["impact speed"]
     assert found["impact speed"] == pytest.approx(np.array([-3.0, -1.0, 1.0, 3.0]) / np.sqrt(5.0))
@@ -307,15 +295,14 @@ def test_chance_gives_one_set_in_twenty_a_miss(located) -> None:
 
 
 def test_an_oblique_ball_has_an_angle_though_it_leans_nowhere(toy) -> None:
-    given = toy.problem([0.0] * 2, speeds=[1.0, 1.0], rig=toy.rig_of(ball=BALL))
+    given = toy.problem([0.0] * 2, speeds=[1.0, 1.0])
     paths = [replace(c, tangential=t) for c, t in zip(given.conditions, (-1.0, 0.0), strict=True)]
     found = covariates(replace(given, conditions=tuple(paths)))
     assert found["angle"] == pytest.approx([-1.0, 1.0])
 
 
-def test_a_drift_is_a_miss_along_the_order_of_testing(toy, located) -> None:
-    given = toy.problem([0.0] * 4, speeds=SPEEDS, drifts=(Drift("restitution", 0.1, 7.0, -26.0),),
-                        rig=toy.problem([0.0] * 4).rig)  # fmt: skip
+def test_a_drift_is_a_miss_along_the_order_of_testing(toy) -> None:
+    given = toy.problem([0.0] * 4, speeds=SPEEDS, drifts=(Drift("restitution", 0.1, 7.0, -26.0),))
     (miss,) = locate(given, toy.fit_of([0.0] * 4), np.random.default_rng(1)).misses
     assert (miss.observable, miss.covariate) == ("restitution", ORDER)
     assert miss.trend == "recordings rise with the order of testing"

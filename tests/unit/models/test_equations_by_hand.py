@@ -221,7 +221,10 @@ WORKED = {
     # Q = 2.59, 8.19, 25.97 and 183.15, worked along 4.25-4.27 with natural logarithms
     "4.24-4.27": lambda: [(LAWS["ye-komvopoulos"].loading(FLAT, depth), F) for depth, F in (
         (1e-6, 13.06843), (1e-5, 280.4688), (1e-4, 5017.744), (4e-3, 219343.0))],
-    "4.28": lambda: [(1.0 / stress_factor(0.3), 1.612797),
+    # from Hertz's stresses on the axis
+    "4.28": lambda: [*((1.0 / stress_factor(nu), worst, 5e-5) for nu, worst in (
+                         (0.25, 1.5543), (0.4, 1.7385))),
+                     (1.0 / stress_factor(0.3), 1.612797),
                      (brake_yield_depth(common_parameters(FLAT)), 4.783263e-7)],
     # 50 um: 1983.70 N without hardening at 630 MPa, 3095.64 N with n = 2.2 at 1 GPa
     "4.29": lambda: [(brake_2015().loading(FLAT, 5e-5), 1983.701),

@@ -168,12 +168,6 @@ def test_kogut_komvopoulos_stops_at_the_hardness_of_its_paper():
         assert float(pressure.max()) == pytest.approx(top, rel=1e-6)
 
 
-def test_brake_onset_is_the_exact_one():
-    """1/F(0.3) = 1.6128, 1/F(0.25) = 1.5543, 1/F(0.4) = 1.7385 from Hertz's axis stresses."""
-    for nu, value in ((0.25, 1.5543), (0.3, 1.6128), (0.4, 1.7385)):
-        assert 1.0 / stress_factor(nu) == pytest.approx(value, abs=1e-4)
-
-
 def test_brake_2012_joins_both_ends_with_their_slopes():
     pair = unit_pair()
     onset = (math.pi / 800.0 / stress_factor(NU)) ** 2

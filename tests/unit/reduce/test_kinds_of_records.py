@@ -105,6 +105,11 @@ def test_a_converter_that_is_full_is_seen_through_the_noise(tmp_path, bits, cut)
     assert run(recorded(tmp_path / "b.csv", whole)).values["peak_force_N"].std < 20.0
 
 
+def heights(folder, time, height):
+    cells, times = ([f"{x:.6f}" for x in column] for column in (height, time))
+    return table(folder / "a.csv", cells, "time_s,height_m", times)
+
+
 @pytest.mark.parametrize(("unit", "rate"), [(1.0, 2.0), (0.5, 1.0), (3.0, 1.0)])
 def test_heights_that_do_not_fall_name_what_would_fit(tmp_path, unit, rate):
     time = np.arange(0.0, 0.75, 0.004)
@@ -112,8 +117,7 @@ def test_heights_that_do_not_fall_name_what_would_fit(tmp_path, unit, rate):
     late = time - 0.4515
     height = np.where(late > 0.0, 0.8 * 4.429 * late - 4.905 * late**2, height)
     height += np.random.default_rng(2).normal(0.0, 3e-4, time.size)
-    cells = [f"{unit * h:.6f}" for h in height]
-    path = table(tmp_path / "a.csv", cells, "time_s,height_m", [f"{t / rate:.5f}" for t in time])
+    path = heights(tmp_path, time / rate, unit * height)
     with pytest.raises(Refused, match="falls with") as told:
         run(path, holds="height")
     size = float(told.value.allowed.split("times ")[1].split()[0])
@@ -245,16 +249,14 @@ def test_volts_counts_and_two_header_lines(tmp_path):
     lines = ["Logger 7", "sample;channel 1", ";V"]
     lines += [f"{k};{v:.6f}".replace(".", ",") for k, v in enumerate(volts)]
     (tmp_path / "blow.txt").write_text("\n".join(lines))
-    kind = load_kind("table")
-    given = {"holds": "force", "gain": 112.0, "gain_std": 1.12, "rate_hz": FAST}
-    found = kind.run(tmp_path / "blow.txt", given, source="test").values
+    given = {"gain": 112.0, "gain_std": 1.12, "rate_hz": FAST}
+    found = run(tmp_path / "blow.txt", **given).values
     assert found["peak_force_N"].value == pytest.approx(800.0, rel=0.01)
     assert found["peak_force_N"].std == pytest.approx(8.0, rel=0.3)
     assert found["contact_time_s"].value == pytest.approx(1e-3, rel=0.02)
     for missing, words in (("gain", "holds volts"), ("rate_hz", "counts samples")):
         with pytest.raises(InputError, match=words):
-            kind.run(tmp_path / "blow.txt", {k: v for k, v in given.items() if k != missing},
-                     source="test")  # fmt: skip
+            run(tmp_path / "blow.txt", **{k: v for k, v in given.items() if k != missing})
 
 
 _TRACK = seen(TrackTruth(rate=500.0, noise=0.1, restitution=0.8))
@@ -315,12 +317,9 @@ def soft_ball(contact, *, rate, e=0.82, v=4.852, seed=1):
 @pytest.mark.parametrize(("contact", "rate"), [(0.015, 240.0), (0.009, 300.0), (0.02, 200.0)])
 def test_a_soft_contact_is_no_flight(tmp_path, contact, rate):
     time, height = soft_ball(contact, rate=rate)
-    rows = [f"{t:.6f},{h:.6f}" for t, h in zip(time, height, strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,height_m", *rows]))
-    kind = load_kind("table")
-    found = kind.run(tmp_path / "a.csv", {"holds": "height"}, source="test").values
-    known = {"holds": "height", "contact_time_s": contact}
-    sharp = kind.run(tmp_path / "a.csv", known, source="test").values
+    path = heights(tmp_path, time, height)
+    found = run(path, holds="height").values
+    sharp = run(path, holds="height", contact_time_s=contact).values
     for numbers in (found, sharp):
         speed, ratio = (numbers[f"bounce1_{n}"] for n in ("impact_speed_m_s", "restitution"))
         assert abs(speed.value - 4.852) < 3.0 * speed.std + 0.005
@@ -367,10 +366,8 @@ def test_what_is_let_down_in_steps_does_not_bounce(tmp_path, seed):
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 3.0, 1.0 / 230.0)
     held = 1.0 - 0.1 * np.floor(2.7 * t) + 3e-3 * np.sin(8.0 * t) + 2e-3 * rng.normal(size=t.size)
-    rows = (f"{s:.5f},{h:.6f}" for s, h in zip(t, held, strict=True))
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,height_m", *rows]))
     with pytest.raises(InputError, match=r"no restitution is known|no contact with flight"):
-        load_kind("table").run(tmp_path / "a.csv", {"holds": "height"}, source="test")
+        run(heights(tmp_path, t, held), holds="height")
 
 
 def test_a_contact_that_tells_nothing_is_left_out_of_the_others(monkeypatch):

@@ -212,15 +212,20 @@ def test_entries_without_repeats_are_held_against_the_stated_noise():
     assert followed_of("x_oil", "restitution", [same], tested=1) is None
 
 
+def cells_of_repeats(toy, value):
+    n = len(value)
+    c = replace(toy.condition(1.0), trials=tuple(range(n)))
+    readings = {"restitution": Readings(value, np.full(n, 0.01))}
+    return cells_of(readings, np.ones(n), np.full(n, math.nan), [c], {})
+
+
 def test_one_repeat_in_ten_may_be_a_slip(toy) -> None:
     """Twenty repeats with two or three far off; three are their noise."""
 
     def dropped(far):
-        c = replace(toy.condition(1.0), trials=tuple(range(20)))
         value = np.full(20, 1.0) + 1e-3 * np.resize([1.0, -1.0], 20)
         value[:far] = 2.0
-        read_ = {"restitution": Readings(value, np.full(20, 1e-2))}
-        return len(cells_of(read_, np.ones(20), np.full(20, math.nan), [c], {}).notes)
+        return len(cells_of_repeats(toy, value).notes)
 
     assert [dropped(2), dropped(3)] == [1, 0]
 
@@ -229,13 +234,7 @@ def test_repeats_tell_their_own_scatter_from_nine_on(toy) -> None:
     """Three deviations to and fro: nine times the variance, eight degrees of freedom."""
 
     def wider(n):
-        c = replace(toy.condition(1.0), trials=tuple(range(n)))
-        value = 1.0 + 0.03 * np.resize([1.0, -1.0], n)
-        found = cells_of(
-            {"restitution": Readings(value, np.full(n, 0.01))}, np.ones(n), np.full(n, math.nan),
-            [c], {},
-        )  # fmt: skip
-        return bool(found.scatters)
+        return bool(cells_of_repeats(toy, 1.0 + 0.03 * np.resize([1.0, -1.0], n)).scatters)
 
     assert [wider(8), wider(9)] == [False, True]
 

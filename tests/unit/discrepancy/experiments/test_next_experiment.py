@@ -86,19 +86,18 @@ def test_rivals_are_those_that_share_the_probability(toy) -> None:
     assert names(a=0.6, b=0.25, baseline=0.15)[:3] == ["a", "b", "baseline"]
 
 
-BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
-        "inertia_kg_m2": 1.2e-6}  # fmt: skip
 ROD = {"tip_radius_m": 0.01, "mass_kg": 0.5, "length_m": 0.3, "radius_m": 0.01,
        "inertia_kg_m2": 0.0037625}  # fmt: skip
 
 
 def on_rig(toy, **strikers):
-    return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=toy.rig_of(**strikers))
+    rig = toy.rig_of(**(strikers or {"ball": toy.BALL}))
+    return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=rig)
 
 
 def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(toy) -> None:
     """Half and 2 m/s are tested; devices D and G know one speed each, as rebound testers do."""
-    given = on_rig(toy, ball=BALL)
+    given = on_rig(toy)
     found = candidates_of(given)
     own = [c.condition.speed for c in found]
     assert own == pytest.approx([2.0**-0.5, 1.0, 2.0**0.5])
@@ -107,7 +106,7 @@ def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(to
     assert all(0.499 < c.condition.speed < 2.001 for c in (*found, *to_build(given)))
     assert [given.conditions[k].speed for k in again(given)] == [0.5, 2.0]
     devices = [toy.condition(2.0, "D"), toy.condition(3.0, "G")]
-    shot = replace(on_rig(toy, D=BALL, G=BALL), conditions=tuple(devices))
+    shot = replace(on_rig(toy, D=toy.BALL, G=toy.BALL), conditions=tuple(devices))
     assert candidates_of(shot) == []
     stated = replace(shot, bench=Bench(speeds_m_s=(1.0, 4.0)))
     assert {c.condition.speed for c in candidates_of(stated)} >= {1.0, 4.0}
@@ -117,16 +116,16 @@ def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(to
 
 
 def test_bodies_that_do_not_yield_leave_nothing_to_scan(toy) -> None:
-    elastic = replace(on_rig(toy, ball=BALL), baseline="elastic")
+    elastic = replace(on_rig(toy), baseline="elastic")
     left, marks = proposing._not_measured(elastic), {"permanent_depth_m", "dent_diameter_m"}
     assert not marks & set(left)
     assert "contact_time_s" in left
     assert presses_of(elastic) == []
-    assert marks <= set(proposing._not_measured(on_rig(toy, ball=BALL)))
+    assert marks <= set(proposing._not_measured(on_rig(toy)))
 
 
 def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
-    given = on_rig(toy, ball=BALL)
+    given = on_rig(toy)
     shots = [
         replace(toy.condition(1.0), tangential=-1.0 / math.tan(math.radians(a)))
         for a in (30.0, 75.0)
@@ -143,7 +142,7 @@ def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
 
 
 def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None:
-    balls = to_build(on_rig(toy, ball=BALL))
+    balls = to_build(on_rig(toy))
     assert sorted(c.built["mass_kg"] for c in balls) == pytest.approx([0.00375, 0.24])
     assert all(c.change.startswith("build a ball") for c in balls)
     rods = to_build(on_rig(toy, ball=ROD))
@@ -182,7 +181,7 @@ OTHERS = ("restitution", "permanent_depth_m", "contact_time_s", "peak_force_N",
 
 
 def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None:
-    given = on_rig(toy, ball=BALL)
+    given = on_rig(toy)
     monkeypatch.setattr(type(given), "with_error", lambda self, known: self, raising=False)
     # the toy has no law that a press could go by
     monkeypatch.setattr(feasible, "presses_of", lambda problem: [])
@@ -211,13 +210,13 @@ def test_what_the_rig_cannot_do_is_not_proposed(toy) -> None:
     some = Bench(minutes=Minutes(strike=2.0, weigh=3.0))
     assert [takes(some, k) for k in ("strike", "weigh", "change")] == [2.0, 3.0, 10.0]
     assert all(math.isnan(takes(some, k)) for k in ("press", "build", "hardness", "instrument"))
-    idle = {**BALL, "tip_radius_m": 0.02}
-    found = candidates_of(on_rig(toy, ball=BALL, larger=idle))
+    idle = {**toy.BALL, "tip_radius_m": 0.02}
+    found = candidates_of(on_rig(toy, ball=toy.BALL, larger=idle))
     assert [c.like for c in found if c.condition.striker == "larger"] == ["ball"] * 5
 
 
 def test_a_hardness_that_is_stated_is_not_tested_again(toy) -> None:
-    rig = toy.rig_of(ball={**BALL, "hardness_Pa": 2e9}, larger=BALL)
+    rig = toy.rig_of(ball={**toy.BALL, "hardness_Pa": 2e9}, larger=toy.BALL)
     both = [SimpleNamespace(name=f"strikers.{name}.Sy_Pa") for name in ("ball", "larger")]
     given = SimpleNamespace(nuisances=both, wrong_numbers=(), bench=Bench(), rig=rig)
     plan = SimpleNamespace(problem=given, cells=[], settled=[], options=[])

@@ -34,6 +34,27 @@ from dentscope.reduce.video.tracking import _rod_shape, _without_reflection, tra
 
 refused = partial(made_records.refused, by=InputError)
 
+MARKERS = Markers(np.arange(30.0), ("a",), np.zeros((30, 1, 3)), "")
+# what is looked at, and a number on either side of its limit
+LIMITS = {
+    "points of a scan lie within a millimetre": (lambda x: _refuse_far(x, Path("a")), 9e-4, 1.1e-3),
+    "a fifth of a sound may be at full scale": (
+        lambda part: check_level(Sound(np.zeros(9), 1.0, part, "")), 0.19, 0.21),
+    "markers fall within three tenths of gravity": (
+        lambda part: check_fall(Measured(9.81 * (1.0 + part), 0.0), 9.81, ""), 0.29, 0.31),
+    "markers lie within a twentieth of their shape": (
+        lambda x: check_shape(SimpleNamespace(spread=x, extent=0.1), ""), 0.0049, 0.0051),
+    "a recording of markers has ten frames": (lambda n: MARKERS.part(3, 2 + n), 10, 9),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+@pytest.mark.parametrize("limit", LIMITS)
+def test_a_reading_is_refused_beyond_its_limit(limit, beyond) -> None:
+    look, *numbers = LIMITS[limit]
+    assert refused(lambda: look(numbers[beyond])) == beyond
+
+
 # --- pictures ---
 
 
@@ -163,11 +184,6 @@ def test_a_ball_is_followed_by_its_edge_where_four_fifths_show_one(sharp, kind, 
 # --- scans ---
 
 
-@pytest.mark.parametrize(("step", "far"), [(0.9e-3, False), (1.1e-3, True)])
-def test_points_of_a_scan_lie_within_a_millimetre(step, far) -> None:
-    assert refused(lambda: _refuse_far(step, Path("a"))) == far
-
-
 def dome(n=31):
     x, y = np.mgrid[:n, :n] - (n - 1) / 2
     return Scan(-(x**2 + y**2) / 200.0, np.ones(2), "")
@@ -249,11 +265,6 @@ def test_a_wall_is_followed_from_45_to_8_hundredths_of_the_depth() -> None:
 # --- sounds ---
 
 
-@pytest.mark.parametrize(("part", "loud"), [(0.19, False), (0.21, True)])
-def test_a_fifth_of_a_sound_may_be_at_full_scale(part, loud) -> None:
-    assert refused(lambda: check_level(Sound(np.zeros(9), 1.0, part, ""))) == loud
-
-
 def test_a_rise_is_that_of_a_millisecond_over_15_before() -> None:
     """Energies of 1 and 9 for half a millisecond each over 0.03 and 0.01 for 7.5 ms each."""
     energy = np.concatenate([np.full(5000, 1.0), np.full(750, 0.03), np.full(750, 0.01),
@@ -273,24 +284,6 @@ def test_an_onset_is_sought_6_ms_before_and_2_ms_after_the_steepest_rise(late_s,
 
 
 # --- markers ---
-
-
-@pytest.mark.parametrize(("part", "wrong"), [(0.29, False), (0.31, True)])
-def test_markers_fall_within_three_tenths_of_gravity(part, wrong) -> None:
-    fall = Measured(9.81 * (1.0 + part), 0.0)
-    assert refused(lambda: check_fall(fall, 9.81, "")) == wrong
-
-
-@pytest.mark.parametrize(("spread", "wrong"), [(0.0049, False), (0.0051, True)])
-def test_markers_lie_within_a_twentieth_of_their_shape(spread, wrong) -> None:
-    poses = SimpleNamespace(spread=spread, extent=0.1)
-    assert refused(lambda: check_shape(poses, "")) == wrong
-
-
-@pytest.mark.parametrize(("frames", "few"), [(9, True), (10, False)])
-def test_a_recording_of_markers_has_ten_frames(frames, few) -> None:
-    markers = Markers(np.arange(30.0), ("a",), np.zeros((30, 1, 3)), "")
-    assert refused(lambda: markers.part(3, 2 + frames)) == few
 
 
 @pytest.mark.parametrize(("before", "told"), [(5, None), (6, 6), (40, 15)])

@@ -120,14 +120,44 @@ def test_a_point_before_three_digits_is_what_the_other_numbers_say(tmp_path, tex
     assert heights(read_text(tmp_path, text)) == pytest.approx(found)
 
 
-def test_a_number_that_may_be_a_thousand_is_told_and_its_row_left_out(tmp_path):
-    """Nothing says so: the row takes no height of another."""
-    text = "drop height (mm);dent depth (um)\n500;55\n1.000;80\n2000;90\n"
+ONE, OTHER = "drop height (cm),e,dent depth (um)\n", "drop height (cm),dent depth (um),e\n"
+TOLD = {
+    "a number that may be a thousand takes no height of another": (
+        "drop height (mm);dent depth (um)\n500;55\n1.000;80\n2000;90\n",
+        {"drop_height_m": [0.5, 2.0]},
+        "row 3, drop height (mm): '1.000': of thousands, or of decimals? write 1000, or 1.0000",
+        "row 3: left out, its drop height or speed is not read"),
+    "an angle that is not read makes no normal impact": (
+        "angle (Grad),v (m/s),e\n?,1,0.5\n95,1,0.6\n60,1,0.7\n", {"restitution": [0.7]},
+        "row 3: left out, its angle is not read",
+        "speeds beside angles are taken as those along the normal"),
+    "another table below is not read by these headers": (
+        f"{ONE}10,0.6,9\n{ONE}20,0.5,12\n{OTHER}10,9,0.6\n", {"restitution": [0.6, 0.5]},
+        "row 5 and those below: left out, headers of another table"),
+    "who measured sums nothing up": (
+        "Prüfer;Fallhöhe (cm);Stoßzahl\nMax;50;0,61\nAnna;50;0,60\nMittelwert;50;0,605\n",
+        {"restitution": [0.61, 0.6]}),
+    "units in every cell hide no separator": (
+        "Fallhöhe;Rückprallhöhe\n50 cm;21 cm\n1 m;0,40 m\n",
+        {"drop_height_m": [0.5, 1.0], "restitution": pytest.approx([0.42**0.5, 0.4**0.5])}),
+    "a unit may stand within a header": (
+        "Fallhöhe (in cm);Rückprallhöhe [mm], 1. Messung;Rückprallhöhe in mm, 2. Messung\n"
+        "10;43;44\n", {"restitution": pytest.approx([0.5 * (0.43**0.5 + 0.44**0.5)])}),
+    "two diameters of one round are a dent's": (
+        "Nr;Fallhöhe [cm];d1 [mm];d2 [mm];HBW\n1;50;0,85;0,87;182\n",
+        {"dent_diameter_m": pytest.approx([8.6e-4])}, "HBW: left out: not understood"),
+    "two diameters below a load": (
+        "Load (N);d1 (mm);d2 (mm);HBW\n-1000;0,62;0,64;180\n",
+        {"dent_diameter_m": pytest.approx([6.3e-4]), "load_N": [1000.0]}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", TOLD)
+def test_a_sheet_is_read_and_what_is_left_out_is_told(tmp_path, what):
+    text, numbers, *told = TOLD[what]
     sheet = read_text(tmp_path, text)
-    assert heights(sheet) == [0.5, 2.0]
-    told = "'1.000': of thousands, or of decimals? write 1000, or 1.0000"
-    assert f"row 3, drop height (mm): {told}" in sheet.left_out
-    assert "row 3: left out, its drop height or speed is not read" in sheet.left_out
+    assert {name: each(sheet, name) for name in numbers} == numbers
+    assert set(told) <= {*sheet.left_out, *map(": ".join, sheet.columns)}
 
 
 @pytest.mark.parametrize(
@@ -169,12 +199,6 @@ def test_a_row_that_sums_up_others_is_no_trial(tmp_path, word):
 def test_a_row_of_words_is_told_with_its_words(tmp_path):
     sheet = read_text(tmp_path, "Fallhöhe (cm);Stoßzahl\n50;0,61\nKugel 20 mm;\n50;0,6\n")
     assert any("Kugel 20 mm" in line for line in sheet.left_out)
-
-
-def test_units_in_every_cell_hide_no_separator(tmp_path):
-    sheet = read_text(tmp_path, "Fallhöhe;Rückprallhöhe\n50 cm;21 cm\n1 m;0,40 m\n")
-    assert heights(sheet) == [0.5, 1.0]
-    assert restitutions(sheet) == pytest.approx([math.sqrt(0.42), math.sqrt(0.4)])
 
 
 def test_rebounds_by_their_number_are_readings_of_one_trial_and_their_mean_none(tmp_path):
@@ -239,12 +263,6 @@ def test_a_height_that_can_not_be_is_told(tmp_path, wrong):
     sheet = read_text(tmp_path, "drop height (cm),rebound height (cm)\n100,0\n100,-64\n")
     assert restitutions(sheet) == [0.0]
     assert "row 3, rebound height (cm): '-64' is too little" in sheet.left_out
-
-
-def test_who_measured_sums_nothing_up(tmp_path):
-    text = "Prüfer;Fallhöhe (cm);Stoßzahl\nMax;50;0,61\nAnna;50;0,60\nMittelwert;50;0,605\n"
-    sheet = read_text(tmp_path, text)
-    assert restitutions(sheet) == [0.61, 0.6]
 
 
 @pytest.mark.parametrize(
@@ -327,15 +345,6 @@ def test_two_drops_are_read_however_they_are_laid_out(tmp_path, text, coding):
 
 def test_a_column_of_units_is_told_as_that(tmp_path):
     assert columns(read_text(tmp_path, LAID_OUT[3]))["column 3"] == "units of 'Fallhöhe'"
-
-
-def test_two_diameters_of_one_round_are_a_dents(tmp_path):
-    sheet = read_text(tmp_path, "Nr;Fallhöhe [cm];d1 [mm];d2 [mm];HBW\n1;50;0,85;0,87;182\n")
-    assert each(sheet, "dent_diameter_m") == pytest.approx([8.6e-4])
-    assert columns(sheet)["HBW"] == "left out: not understood"
-    sheet = read_text(tmp_path, "Load (N);d1 (mm);d2 (mm);HBW\n-1000;0,62;0,64;180\n")
-    assert each(sheet, "dent_diameter_m") == pytest.approx([6.3e-4])
-    assert each(sheet, "load_N") == [1000.0]
 
 
 @pytest.mark.parametrize("lang", OF_LABORATORIES)
@@ -460,25 +469,12 @@ def test_speeds_beside_both_angles_are_those_along_the_path(tmp_path):
     assert "row 4: rebound speed left out, it has no angle" in sheet.left_out
 
 
-def test_an_angle_that_is_not_read_makes_no_normal_impact(tmp_path):
-    sheet = read_text(tmp_path, "angle (Grad),v (m/s),e\n?,1,0.5\n95,1,0.6\n60,1,0.7\n")
-    assert restitutions(sheet) == [0.7]
-    assert "row 3: left out, its angle is not read" in sheet.left_out
-    assert "speeds beside angles are taken as those along the normal" in sheet.left_out
-
-
 @pytest.mark.parametrize("blank", [" ", "\u00a0", "\u202f", "'"])
 def test_blanks_that_part_thousands(tmp_path, blank):
     sheet = read_text(
         tmp_path, f"Höhe{blank}mm;e\n1{blank}000,5;0,6\n20;0,5\n".replace("'mm", " mm")
     )
     assert heights(sheet) == [1.0005, 0.02]
-
-
-def test_a_unit_may_stand_within_a_header(tmp_path):
-    head = "Fallhöhe (in cm);Rückprallhöhe [mm], 1. Messung;Rückprallhöhe in mm, 2. Messung"
-    sheet = read_text(tmp_path, f"{head}\n10;43;44\n")
-    assert restitutions(sheet) == pytest.approx([0.5 * (math.sqrt(0.43) + math.sqrt(0.44))])
 
 
 def test_presses_are_rows_too(tmp_path):
@@ -498,13 +494,6 @@ def test_rows_are_counted_as_the_file_has_them(tmp_path):
     assert "row 6, rebound height (mm): 'oops' is no length" in sheet.left_out
     assert "row 7, drop height (cm): '-5' is too little" in sheet.left_out
     assert columns(sheet)["column 4"] == "left out: no header"
-
-
-def test_another_table_below_is_told_and_not_read_by_these_headers(tmp_path):
-    one, other = "drop height (cm),e,dent depth (um)\n", "drop height (cm),dent depth (um),e\n"
-    sheet = read_text(tmp_path, f"{one}10,0.6,9\n{one}20,0.5,12\n{other}10,9,0.6\n")
-    assert restitutions(sheet) == [0.6, 0.5]
-    assert "row 5 and those below: left out, headers of another table" in sheet.left_out
 
 
 def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tmp_path):
