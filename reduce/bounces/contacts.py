@@ -26,13 +26,7 @@ from .flights import Piece
 from .joint import SHARED, Before, JointSolution, fit_together
 from .scale import check_scale, floor_drift, frames_lost, scale_of
 from .sides import Sides, joined, known_before, sides_of, true_contacts, usual_spread
-from .touch import (
-    common_durations,
-    likely_durations,
-    samples_of,
-    speeds,
-    touch_of,
-)
+from .touch import common_durations, likely_durations, samples_of, speeds, touch_of
 from .track import Track, on_the_body, turning_points
 from .view import Stage, View
 

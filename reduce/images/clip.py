@@ -69,9 +69,8 @@ def read_clip(
     """
     if not path.exists():
         raise InputError(
-            "no such file or folder", source=str(path),
-            allowed="a video or a folder of pictures",
-        )  # fmt: skip
+            "no such file or folder", source=str(path), allowed="a video or a folder of pictures"
+        )
     if path.is_dir():
         reader = _pictures(path, channel)
     elif path.suffix.lower() in (".tif", ".tiff"):

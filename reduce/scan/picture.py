@@ -79,9 +79,8 @@ def draw_ball(result: ScannedBall, path: Path) -> None:
     nm = 1e9
     limit = 4.0 * nm * result.rest
     points = axes[0, 0].scatter(
-        UM * result.x, UM * result.y, c=nm * result.off, s=2, cmap="RdBu_r", vmin=-limit,
-        vmax=limit,
-    )  # fmt: skip
+        UM * result.x, UM * result.y, c=nm * result.off, s=2, cmap="RdBu_r", vmin=-limit, vmax=limit
+    )
     axes[0, 0].plot(*(UM * result.top), "k+", ms=12)
     axes[0, 0].set(aspect="equal", xlabel="x [um]", ylabel="y [um]", title="above the sphere [nm]")
     made.colorbar(points, ax=axes[0, 0])

@@ -143,9 +143,7 @@ def _hdf5(path: Path) -> dict[str, list[_Channel]]:
 def _read(data: Any, size: int, path: Path) -> Array:
     if size > _CHANNEL_SAMPLES:
         raise InputError(
-            f"{size} samples in one channel",
-            source=str(path),
-            allowed=f"up to {_CHANNEL_SAMPLES}",
+            f"{size} samples in one channel", source=str(path), allowed=f"up to {_CHANNEL_SAMPLES}"
         )
     return np.asarray(data[:])
 

@@ -118,9 +118,8 @@ class Columns:
             elif bracketed:
                 told += f", {said!r} is none that is known"
             raise InputError(
-                f"{column} {told}",
-                source=self.source, key=key, allowed=", ".join(units),
-            )  # fmt: skip
+                f"{column} {told}", source=self.source, key=key, allowed=", ".join(units)
+            )
         return units[default]
 
 

@@ -13,9 +13,7 @@ from ..shared.units import UNITS
 # oscilloscopes
 _LINES_ABOVE = 4
 
-_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
-    "V", "mV", "px",
-}  # fmt: skip
+_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {"V", "mV", "px"}
 _CAPITALS = {unit.upper(): unit for unit in sorted(_KNOWN_UNITS, reverse=True)}
 _BRACKETED = re.compile(r"[\[(<]\s*([^\])>]+?)\s*[\])>]")
 _AT_END = re.compile(r"(\S+?)\s*(?:[/,\n]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")

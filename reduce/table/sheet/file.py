@@ -130,9 +130,8 @@ def _place(head: Head, name: str, source: str, key: str) -> int:
         if header and bare(name) in (bare(header), bare(without_unit(header))):
             return k
     raise InputError(
-        f"no header {name!r}", source=source, key=key,
-        allowed=", ".join(filter(None, head.headers)),
-    )  # fmt: skip
+        f"no header {name!r}", source=source, key=key, allowed=", ".join(filter(None, head.headers))
+    )
 
 
 def _of_book(

@@ -37,8 +37,7 @@ LEAST, END = (
     for end in (words.LEAST, f"{words.LEAST}|{words.MOST}")
 )
 _WIDE = _ENDS.format(f"({letters(words.SPREADS)}|{letters(words.ERRORS)})")
-_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?|(?<=[)\]] )[su]$|(?<=\w )[su](?= [\[(])",
-                     re.IGNORECASE)  # fmt: skip
+_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?|(?<=[)\]] )[su]$|(?<=\w )[su](?= [\[(])", re.IGNORECASE)
 _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
 _PLAIN = (CONDITIONS.keys() | MEASURED.keys()) - {"striker"}
