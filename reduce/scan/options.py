@@ -9,7 +9,7 @@ from pydantic import Field
 from ...core.inputs.toml_input import InputTable
 
 
-class ScanOptions(InputTable):
+class Options(InputTable):
     """Options of the reduction of a scan."""
 
     shows: Literal["crater", "ball"] = Field(
@@ -36,7 +36,3 @@ class ScanOptions(InputTable):
     reach_m: float | None = Field(
         None, gt=0.0, description="of a ball: distance from the top that is used; default: all"
     )
-
-
-Options = ScanOptions
-"""By this name a kind is found."""

@@ -14,7 +14,7 @@ Holds = Literal[
 ]
 
 
-class TableOptions(BounceOptions, TimeWindow):
+class Options(BounceOptions, TimeWindow):
     """Options of the reduction of a table."""
 
     holds: Holds = Field(
@@ -76,7 +76,3 @@ class TableOptions(BounceOptions, TimeWindow):
         description="normal speed before the pulse; with mass_kg gives the restitution",
     )
     approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
-
-
-Options = TableOptions
-"""By this name a kind is found."""
