@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.arrays import Array, Integers
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, optional, reading
 from ..rules import RULES
 from ..shared.media import container_of
 from . import photron
@@ -156,28 +156,21 @@ def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
 
 
 def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
-    try:
-        import tifffile
-    except ImportError:
-        raise missing_extra("reading pictures", "video") from None
+    tifffile = optional("tifffile", "reading pictures", "video")
     # its remarks on damaged headers go to the terminal; the one line below says what matters
     logging.getLogger("tifffile").setLevel(logging.CRITICAL)
-    try:
-        with tifffile.TiffFile(path) as pages:
-            for page in pages.pages:
-                if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
-                    raise InputError(
-                        f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
-                        allowed=f"pages up to {_CLIP_BYTES // 10**9} GB",
-                    )  # fmt: skip
-                yield np.nan, grey_picture(page.asarray(), channel, str(path))
-    except InputError:
-        raise
-    except Exception as error:  # every codec raises its own kind
-        raise InputError(
-            f"cannot be read as a TIFF ({first_line(error)})", source=str(path),
-            allowed="a TIFF of many pages, 8 or 16 bits a pixel",
-        ) from None  # fmt: skip
+    allowed = "a TIFF of many pages, 8 or 16 bits a pixel"
+    with (
+        reading(path, allowed, "cannot be read as a TIFF"),
+        tifffile.TiffFile(path) as pages,
+    ):
+        for page in pages.pages:
+            if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
+                raise InputError(
+                    f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
+                    allowed=f"pages up to {_CLIP_BYTES // 10**9} GB",
+                )  # fmt: skip
+            yield np.nan, grey_picture(page.asarray(), channel, str(path))
 
 
 def _timing(stamps: Array) -> tuple[float, int]:

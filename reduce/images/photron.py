@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError
+from ...core.errors import InputError, reading
 from ...core.inputs.input_file import read_bytes
 
 # limit: largest header of a clip [bytes]: a thousand times the usual one
@@ -91,14 +91,10 @@ def _header(path: Path) -> dict[str, str]:
 
 def _of_xml(text: str, source: Path) -> dict[str, str]:
     found = re.search(r"<cih>.*</cih>", text, re.DOTALL)
-    try:
+    with reading(source, "a header of Photron", raised=(ElementTree.ParseError, ValueError)):
         if found is None or "<!ENTITY" in text:
             raise ValueError("no table cih")
         root = ElementTree.fromstring(found.group())
-    except (ElementTree.ParseError, ValueError) as error:
-        raise InputError(
-            f"cannot be read ({error})", source=str(source), allowed="a header of Photron"
-        ) from None
     return {name: root.findtext(place, "").strip() for name, (_, place) in _HEADERS.items()}
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, optional, reading
 from ...core.inputs.input_file import checked_file
 
 # limit: largest picture [bytes]: memory of a small machine
@@ -25,22 +25,14 @@ PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
 
 def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
     """Return one picture as grey values 0-255, (rows, columns); refuse what cannot be read."""
-    try:
-        from skimage.io import imread
-    except ImportError:
-        raise missing_extra("reading pictures", "video") from None
+    skimage_io = optional("skimage.io", "reading pictures", "video")
     checked_file(path, most=_PICTURE_BYTES, allowed="a picture")
     if path.suffix.lower() not in PICTURES:
         raise InputError(
             "cannot be read as a picture", source=str(path), allowed=" ".join(PICTURES)
         )
-    try:
-        pixels = np.asarray(imread(path))
-    except Exception as error:  # every plug-in of the picture reader raises its own kind
-        raise InputError(
-            f"cannot be read as a picture ({first_line(error)})", source=str(path),
-            allowed=" ".join(PICTURES),
-        ) from None  # fmt: skip
+    with reading(path, " ".join(PICTURES), "cannot be read as a picture"):
+        pixels = np.asarray(skimage_io.imread(path))
     return grey_picture(pixels, channel, str(path))
 
 

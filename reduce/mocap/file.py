@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, missing_extra, reading
 from ...core.inputs.csv_table import shown
 from ...core.processes.confined import confined
 from ..shared.units import LENGTH, metres
@@ -150,17 +150,13 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
 def _c3d_content(path: Path) -> tuple[Array, Array, list[str], list[str], list[float]]:
     import ezc3d
 
-    try:
+    with reading(path, "a C3D file", "cannot be read as C3D"):
         content = ezc3d.c3d(str(path))
         points = np.asarray(content["data"]["points"], dtype=np.float64)[:3]
         residuals = np.asarray(content["data"]["meta_points"]["residuals"])[0]
         labels = [str(n) for n in _parameter(content, "LABELS")][: points.shape[1]]
         stated = [str(u).strip().lower() for u in _parameter(content, "UNITS")]
         rates = [float(r) for r in _parameter(content, "RATE")]
-    except Exception as error:  # the library raises its own kinds, and KeyError where a part lacks
-        raise InputError(
-            f"cannot be read as C3D ({first_line(error)})", source=str(path), allowed="a C3D file"
-        ) from None
     return points, residuals, labels, stated, rates
 
 
