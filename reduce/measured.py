@@ -91,9 +91,9 @@ def propagate(
     return tuple(Measured(float(v), float(s)) for v, s in zip(value, std, strict=True))
 
 
-def labels(count: int) -> list[str]:
-    """Return how the bounces of one file are told apart: not at all if there is one."""
-    return [""] if count == 1 else [f"bounce{k}" for k in range(1, count + 1)]
+def labels(count: int, of: str = "bounce") -> list[str]:
+    """Return how the bounces, or others, of one file are told apart: not at all if there is one."""
+    return [""] if count == 1 else [f"{of}{k}" for k in range(1, count + 1)]
 
 
 def labelled(each: Iterable[tuple[str, Mapping[str, Measured]]]) -> dict[str, Measured]:

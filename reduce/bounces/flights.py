@@ -157,7 +157,7 @@ class _Fit:
 
     def heights(self, time: Array) -> Array:
         if self.view is None:
-            return self.regression.predict(_powers(time - self.reference))
+            return np.asarray(_powers(time - self.reference) @ self.regression.coefficients)
         return self.stage.seen(self.view, self.launch, self.reference, time)
 
     def deviations(self, track: Track, index: Indices) -> Array:
@@ -174,8 +174,7 @@ class _Fit:
     def speed_error(self, contact: float, time: Array) -> float:
         """Return the error of the speed at a contact by a flight seen at some times [unit/s]."""
         late = contact - self.reference
-        parabola = self.view is None
-        row = np.array([0.0, 1.0, 2.0 * late] if parabola else [0.0, 1.0])
+        row = np.array([0.0, 1.0, 2.0 * late] if self.view is None else [0.0, 1.0])
         fall = 2.0 * self.regression.coefficients[2] if self.view is None else self.view.fall
         bridged = RULES.uneven_fall * abs(fall) * float(np.abs(time - contact).min())
         variance = float(row @ self.regression.covariance @ row)

@@ -93,7 +93,6 @@ def _settled(
     mean = np.array([before.fall.value, before.drag.value, 0.0, 0.0, 0.0])
     bends, grows = width * before.bends, width * before.grows
     std = np.array([before.fall.std, before.drag.std, bends, bends, grows])
-    x, moved = x.copy(), np.inf
     for _ in range(15):
         design, left = _system(track, pieces, stage, x)
         known = np.zeros((SHARED, x.size))
@@ -105,9 +104,8 @@ def _settled(
         inverse = np.linalg.pinv(normal, hermitian=True)
         step = inverse @ ((design / size).T @ left)
         misfit = float(left @ left)
-        moved = float(np.abs(step).max())
         x = x + step / size
-        if moved < 1e-3:
+        if np.abs(step).max() < 1e-3:
             break
     _, log_size = np.linalg.slogdet(normal)
     spread = float(log_size + 2.0 * np.log(size).sum() + 2.0 * np.log(std).sum())

@@ -10,7 +10,6 @@ from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core.arrays import Array, Integers
 from ...core.errors import InputError, optional, reading
@@ -20,6 +19,8 @@ from . import photron
 from .picture_file import (
     DOWN,
     PICTURES,
+    Crop,
+    Frame,
     cropped,
     grey_picture,
     natural_order,
@@ -29,8 +30,6 @@ from .picture_file import (
 
 # limit: memory that a clip may take [bytes]: memory of a small machine
 _CLIP_BYTES = 3_000_000_000
-
-Frame = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ def read_clip(
     down: str = "down",
     first: int = 0,
     last: int | None = None,
-    crop: tuple[int, int, int, int] | None = None,
+    crop: Crop | None = None,
 ) -> Clip:
     """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
 

@@ -157,7 +157,6 @@ def _settle(
 ) -> Array | None:
     """Weighted Gauss-Newton with Huber weights; the parameters (p,), or None."""
     p, moved = start.copy(), list(free)
-    move = np.full(len(moved), np.inf)
     for _ in range(_EDGE_ROUNDS):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]

@@ -59,10 +59,9 @@ def section_covariance(found: Levelled, half_width: float) -> Array:
 
 def opening(line: Section, depth: float, covariance: Array) -> Measured:
     """Return the distance between the two walls where they reach the surface; nan if one is cut."""
-    ends = [_wall_end(side * line.s, line.z, depth, covariance) for side in (-1.0, 1.0)]
-    if any(e is None for e in ends):
+    left, right = (_wall_end(side * line.s, line.z, depth, covariance) for side in (-1.0, 1.0))
+    if left is None or right is None:
         return Measured(math.nan, math.nan)
-    left, right = (e for e in ends if e is not None)
     return Measured(left.value + right.value, math.hypot(left.std, right.std))
 
 

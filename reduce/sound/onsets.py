@@ -39,10 +39,8 @@ def find_onsets(
     heard = sosfilt(butter(4, edge, "highpass", fs=rate, output="sos"), sound.samples)
     rise = _rise_db(heard, rate)
     peaks, _ = find_peaks(rise, height=least_rise_db, distance=max(1, round(least_interval * rate)))
-    picks = [_pick(heard, int(p), rate) for p in peaks]
-    time = np.array([p[0] for p in picks])
+    time, std = np.array([_pick(heard, int(p), rate) for p in peaks]).reshape(-1, 2).T
     order = np.argsort(time)
-    std = np.array([p[1] for p in picks])
     return Onsets(time[order], std[order], rise[peaks][order])
 
 

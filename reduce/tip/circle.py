@@ -59,7 +59,6 @@ def _steps(values: Array, t: Array) -> tuple[Array, Mask]:
         [t[0] + bright.sum(axis=1) * RULES.edge_step, low, high - low, np.full(len(low), 1.5)],
         axis=1,
     )
-    move = np.full(len(p), np.inf)
     for _ in range(_TIP_ROUNDS):
         z = (p[:, :1] - t) / p[:, 3:]
         step = ndtr(z)
@@ -72,8 +71,8 @@ def _steps(values: Array, t: Array) -> tuple[Array, Mask]:
         p = p + change
         p[:, 3] = np.clip(p[:, 3], 0.3, 0.3 * (t[-1] - t[0]))
         p[:, 0] = np.clip(p[:, 0], t[0], t[-1])
-        move = np.abs(change[:, 0])
-    return p, (move < 0.02) & (p[:, 2] > 5.0) & (np.abs(p[:, 0]) < 0.8 * t[-1])
+    settled = np.abs(change[:, 0]) < 0.02
+    return p, settled & (p[:, 2] > 5.0) & (np.abs(p[:, 0]) < 0.8 * t[-1])
 
 
 def fit_circle(

@@ -11,11 +11,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import binary_fill_holes
 
 from ...core.arrays import Array, Indices, Mask
 from ...core.errors import InputError
+from ..images.picture_file import Frame
 from ..images.silhouette import body_mask
 from ..measured import Measured
 from ..rules import RULES
@@ -66,7 +66,7 @@ class TipReduction:
 
 
 def reduce_tip(
-    picture: npt.NDArray[np.uint8],
+    picture: Frame,
     *,
     shape: str = "rod",
     striker_is: str = "dark",

@@ -217,12 +217,8 @@ def _lean_notes(result: VideoReduction) -> list[str]:
         "before": result.lean[max(turning - 2 * count, 0) : turning][:count],
         "after": result.lean[turning + count : turning + 2 * count],
     }
-    notes = []
-    for name, lean in sides.items():
-        if lean.size == 0:
-            continue
-        angle, std = float(np.median(lean)), float(np.std(lean))
-        notes.append(
-            f"axis {name} contact {90 - math.degrees(angle):.2f} ± {math.degrees(std):.2f} deg"
-        )
-    return notes
+    return [
+        f"axis {name} contact {90 - math.degrees(np.median(lean)):.2f} ± "
+        f"{math.degrees(np.std(lean)):.2f} deg"
+        for name, lean in sides.items() if lean.size
+    ]  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 from ....core.errors import InputError
@@ -89,7 +89,7 @@ class Head:
     first: int = 0
     end: int = 0
     headers: Sequence[str] = ()
-    says: Sequence[str] = field(default=())
+    says: Sequence[str] = ()
 
     @property
     def known(self) -> tuple[int, int, int, int]:
