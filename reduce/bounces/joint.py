@@ -82,8 +82,8 @@ def fit_together(
     belief /= belief.sum()
     solutions = [JointSolution(f[0], f[1], float(w)) for f, w in zip(found, belief, strict=True)]
     solutions.sort(key=lambda s: -s.weight)
-    launches = [solutions[0].launch(k) for k in range(len(pieces))]
-    return [replace(p, launch=q) for p, q in zip(pieces, launches, strict=True)], solutions
+    likeliest = solutions[0]
+    return [replace(p, launch=likeliest.launch(k)) for k, p in enumerate(pieces)], solutions
 
 
 def _settled(

@@ -10,7 +10,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -90,7 +91,8 @@ def _vicon(rows: list[list[str]], source: str) -> Export:
         name: [k, k + 1, k + 2] for k, name in enumerate(titles) if name and not name.isdigit()
     }
     unit = next((u for u in units if u in LENGTH), "mm")
-    return _export(_block(rows[top + 5 :]), found, 0, rate, unit, source)
+    block = takewhile(any, rows[top + 5 :])  # up to the empty line that ends it
+    return _export(block, found, 0, rate, unit, source)
 
 
 def _qualisys(rows: list[list[str]], source: str) -> Export:
@@ -113,21 +115,13 @@ def _opensim(rows: list[list[str]], source: str) -> Export:
     return _export(rows[5:], found, 1, 1.0, said.get("Units", "mm"), source)
 
 
-def _block(rows: Sequence[list[str]]) -> Iterator[list[str]]:
-    """Rows up to the empty line that ends a block."""
-    for row in rows:
-        if not any(row):
-            return
-        yield row
-
-
 def _is_number(cell: str) -> bool:
     return bool(np.isfinite(number(cell)))
 
 
 def _export(
-    rows: Sequence[list[str]] | Iterator[list[str]], found: dict[str, list[int]], clock: int,
-    rate: float, unit: str, source: str,
+    rows: Iterable[list[str]], found: dict[str, list[int]], clock: int, rate: float, unit: str,
+    source: str,
 ) -> Export:  # fmt: skip
     """Collect times (a column over a rate) and the places of every marker."""
     data = [row for row in rows if len(row) > clock and _is_number(row[clock])]

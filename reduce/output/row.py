@@ -12,17 +12,21 @@ from ...recordings.columns import VARIED
 class Row(InputTable):
     """What the raw file does not tell about the trial."""
 
-    trial: FileNameIfAny = Field("", description="name of the trial; default: the file's")
-    striker: str = Field("", description="name in set.toml; default: the only one")
+    trial: FileNameIfAny = Field(default="", description="name of the trial; default: the file's")
+    striker: str = Field(default="", description="name in set.toml; default: the only one")
     angle_deg: float | None = Field(
-        None, gt=0.0, le=90.0, description="angle of the impact; default: 90"
+        default=None, gt=0.0, le=90.0, description="angle of the impact; default: 90"
     )
-    impact_speed_m_s: float | None = Field(None, gt=0.0, description="normal approach speed")
-    impact_speed_m_s_std: float | None = Field(None, gt=0.0, description="its standard deviation")
-    drop_height_m: float | None = Field(None, gt=0.0, description="height of fall")
-    spot: str = Field("", description="same text: same place on the flat")
+    impact_speed_m_s: float | None = Field(
+        default=None, gt=0.0, description="normal approach speed"
+    )
+    impact_speed_m_s_std: float | None = Field(
+        default=None, gt=0.0, description="its standard deviation"
+    )
+    drop_height_m: float | None = Field(default=None, gt=0.0, description="height of fall")
+    spot: str = Field(default="", description="same text: same place on the flat")
     x: str = Field(
-        "",
+        default="",
         pattern=r"^(\w+=[^,=]*(,\w+=[^,=]*)*)?$",
         description="what else was varied, NAME=VALUE,...: columns x_NAME",
     )

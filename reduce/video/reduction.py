@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Array, Integers
-from ..bounces.bounce import Bounce, Bounced
-from ..bounces.contacts import told_bounces
+from ..bounces.contacts import Bounce, Bounced, told_bounces
 from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
