@@ -53,11 +53,9 @@ def _read(
             known_steps = [i for i in back if np.isfinite(columns[first][i : i + 2]).all()]
             for i in known_steps[:1]:
                 problems.add(
-                    f"{columns[first][i + 1]:g} after {columns[first][i]:g}",
-                    row=table.rows[i + 1],
-                    column=first,
-                    allowed="a column that increases",
-                )
+                    f"{columns[first][i + 1]:g} after {columns[first][i]:g}", row=table.rows[i + 1],
+                    column=first, allowed="a column that increases",
+                )  # fmt: skip
     if problems.found:
         raise InputErrors(tuple(problems.found))
     for column in columns.values():

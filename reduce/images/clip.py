@@ -50,14 +50,9 @@ class Clip:
 
 
 def read_clip(
-    path: Path,
-    *,
-    channel: str = "grey",
-    down: str = "down",
-    first: int = 0,
-    last: int | None = None,
-    crop: Crop | None = None,
-) -> Clip:
+    path: Path, *, channel: str = "grey", down: str = "down", first: int = 0,
+    last: int | None = None, crop: Crop | None = None,
+) -> Clip:  # fmt: skip
     """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
 
     Pictures are taken in the natural order of their names. `channel` is one of `CHANNELS`, `down`,

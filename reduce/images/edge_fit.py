@@ -75,13 +75,9 @@ class BallEdge:
 
 
 def fit_rod(
-    frame: Array,
-    shape: RodShape,
-    pose: tuple[float, float, float],
-    *,
-    levels: tuple[float, float],
+    frame: Array, shape: RodShape, pose: tuple[float, float, float], *, levels: tuple[float, float],
     free: str = "pose",
-) -> RodPose | None:
+) -> RodPose | None:  # fmt: skip
     """Fit pose, or pose and shape, to the grey values around the tip.
 
     - `frame`: (rows, columns), grey values, the rod bright.
@@ -146,15 +142,9 @@ def fit_ball(
 
 
 def _settle(
-    picture: Picture,
-    values: Array,
-    start: Array,
-    *,
-    free: tuple[int, ...],
-    limits: Array,
-    low: Array,
-    high: Array,
-) -> Array | None:
+    picture: Picture, values: Array, start: Array, *, free: tuple[int, ...], limits: Array,
+    low: Array, high: Array,
+) -> Array | None:  # fmt: skip
     """Weighted Gauss-Newton with Huber weights; the parameters (p,), or None."""
     p, moved = start.copy(), list(free)
     for _ in range(_EDGE_ROUNDS):

@@ -79,16 +79,9 @@ class Body:
 
 
 def make_body(
-    poses: Poses,
-    markers: Markers,
-    *,
-    shape: str,
-    tip_radius: float,
-    length: float,
-    radius: float | None,
-    file: Path | None,
-    axis: tuple[str, str] | None,
-) -> tuple[Body, tuple[str, ...]]:
+    poses: Poses, markers: Markers, *, shape: str, tip_radius: float, length: float,
+    radius: float | None, file: Path | None, axis: tuple[str, str] | None,
+) -> tuple[Body, tuple[str, ...]]:  # fmt: skip
     """Return the body and remarks about it; lengths [m].
 
     Without a `BodyFile` spin shows the centre of mass, and `axis` names two markers on a line along

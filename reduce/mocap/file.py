@@ -83,13 +83,9 @@ class Markers:
 
 
 def read_markers(
-    path: Path,
-    *,
-    unit: str | None,
-    rate: float | None,
-    select: str = "",
+    path: Path, *, unit: str | None, rate: float | None, select: str = "",
     points: Mapping[str, Sequence[float]] | None = None,
-) -> Markers:
+) -> Markers:  # fmt: skip
     """Read marker tracks from a C3D file, a tracker's export, or a table.
 
     A table has names above its numbers, a column `time_s` (or `frame`, with `rate` [1/s]), and
@@ -166,12 +162,9 @@ def _parameter(content: Any, name: str) -> list[Any]:
 
 
 def _table(
-    path: Path,
-    unit: str | None,
-    rate: float | None,
-    select: str,
+    path: Path, unit: str | None, rate: float | None, select: str,
     points: Mapping[str, Sequence[float]],
-) -> Markers:
+) -> Markers:  # fmt: skip
     table = read_columns(path)
     if select:
         table = table.select(select)

@@ -50,15 +50,9 @@ class Stored:
 
 
 def store(
-    reduced: Reduced,
-    folder: Path,
-    row: Row,
-    *,
-    kind: str,
-    options: Mapping[str, Any],
-    setup: SetFile | None = None,
-    strikers: Sequence[str] = (),
-) -> Stored:
+    reduced: Reduced, folder: Path, row: Row, *, kind: str, options: Mapping[str, Any],
+    setup: SetFile | None = None, strikers: Sequence[str] = (),
+) -> Stored:  # fmt: skip
     """Write a reduction into a set, new or existing, in a row with conditions that the file lacks.
 
     `kind` and `options` are kept in the record. A new set gets `setup`, or else one to fill in, of

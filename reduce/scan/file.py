@@ -55,12 +55,9 @@ class Scan:
 
 
 def read_scan(
-    path: Path,
-    *,
-    unit: str | None = None,
-    height_unit: str | None = None,
+    path: Path, *, unit: str | None = None, height_unit: str | None = None,
     step: float | None = None,
-) -> Scan:
+) -> Scan:  # fmt: skip
     """Read any file that SurfaceTopography knows, a mesh's points, or comma-separated numbers.
 
     Units of length along the surface and of the heights (by default the same), of `units.LENGTH`,

@@ -75,14 +75,9 @@ class TipReduction:
 
 
 def reduce_tip(
-    picture: Frame,
-    *,
-    shape: str = "rod",
-    striker_is: str = "dark",
-    scale: Measured | None = None,
-    diameter: Measured | None = None,
-    source: str = "",
-) -> TipReduction:
+    picture: Frame, *, shape: str = "rod", striker_is: str = "dark", scale: Measured | None = None,
+    diameter: Measured | None = None, source: str = "",
+) -> TipReduction:  # fmt: skip
     """Fit a circle to the tip of a body in grey values (rows, columns), the tip pointing down.
 
     A rod enters from above, a sphere is wholly in view. The size of a pixel [m] is `scale`, or

@@ -113,13 +113,9 @@ class VideoReduction:
 
 
 def reduce_video(
-    clip: Clip,
-    optics: Optics,
-    *,
-    shape: str = "rod",
-    striker_is: str = "bright",
+    clip: Clip, optics: Optics, *, shape: str = "rod", striker_is: str = "bright",
     background: str = "none",
-) -> VideoReduction:
+) -> VideoReduction:  # fmt: skip
     """Track the striker through a clip with gravity downwards and return its contacts.
 
     A rod enters from above, with straight sides and a round tip; a sphere is wholly in view.
