@@ -154,10 +154,7 @@ def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
     # its remarks on damaged headers go to the terminal; the one line below says what matters
     logging.getLogger("tifffile").setLevel(logging.CRITICAL)
     allowed = "a TIFF of many pages, 8 or 16 bits a pixel"
-    with (
-        reading(path, allowed, "cannot be read as a TIFF"),
-        tifffile.TiffFile(path) as pages,
-    ):
+    with reading(path, allowed, "cannot be read as a TIFF"), tifffile.TiffFile(path) as pages:
         for page in pages.pages:
             if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
                 raise InputError(

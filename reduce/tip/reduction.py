@@ -21,12 +21,7 @@ from ..images.picture_file import Frame
 from ..images.silhouette import body_mask
 from ..measured import Measured
 from ..rules import RULES
-from ..shared.regression import (
-    correlation_factor,
-    robust_regression,
-    robust_std,
-    unit_covariance,
-)
+from ..shared.regression import correlation_factor, robust_regression, robust_std, unit_covariance
 
 # limit: rounds of the edge and the circle at most [-]
 _TIP_ROUNDS = 12

@@ -64,9 +64,8 @@ def _guessed(
 
 
 def _without_reflection(
-    frames: Frame, poses: list[tuple[int, RodPose]], shape: RodShape,
-    levels: tuple[float, float],
-) -> list[tuple[int, RodPose]]:  # fmt: skip
+    frames: Frame, poses: list[tuple[int, RodPose]], shape: RodShape, levels: tuple[float, float]
+) -> list[tuple[int, RodPose]]:
     """Fit the tip anew, with its reflection, where it is so near to the flat that both overlap."""
     rows = np.array([p.y for _, p in poses])
     lowest = float(rows.max(initial=0.0))
