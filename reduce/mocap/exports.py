@@ -29,10 +29,7 @@ _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": 
 
 
 class Export(NamedTuple):
-    """What an export holds: (n,) times [s], m names, positions (n, m, 3) in `unit`.
-
-    NaN where a marker was not seen.
-    """
+    """Times (n,) [s], m names, positions (n, m, 3) in `unit`, NaN where a marker was not seen."""
 
     time: Array
     names: tuple[str, ...]
@@ -41,10 +38,7 @@ class Export(NamedTuple):
 
 
 def read_export(path: Path) -> Export | None:
-    """Return what a tracker's export holds, None for any other file.
-
-    Refuse one without positions.
-    """
+    """Return a tracker's export, None for any other file; refuse one without positions."""
     with path.open("rb") as stream:
         first = stream.read(4096).decode("utf-8-sig", errors="replace")
     known = {"Format Version": _motive, "NO_OF_FRAMES": _qualisys, "PathFileType": _opensim}

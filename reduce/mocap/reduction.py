@@ -45,10 +45,7 @@ def columns_of(measured: Mapping[str, Measured]) -> dict[str, Measured]:
 
 @dataclass(frozen=True)
 class MocapScene:
-    """What the markers do not tell: up (3,) out of the flat in the file's axes, gravity [m/s²].
-
-    And the relative standard deviation of all lengths of the tracker.
-    """
+    """Up (3,) out of the flat in the file's axes, gravity [m/s²], relative error of all lengths."""
 
     up: Array
     gravity: float = GRAVITY

@@ -66,10 +66,7 @@ def kabsch(shape: Array, points: Array) -> tuple[Array, Array]:
 
 
 def rigid_poses(markers: Markers) -> Poses:
-    """Return mean shape and poses of a body with three or more markers.
-
-    Refuses fewer, and too few frames in which three are seen.
-    """
+    """Return mean shape and poses; refuse fewer than three markers, or seen in too few frames."""
     points = markers.position
     seen: Mask = np.asarray(np.isfinite(points).all(axis=2))
     if points.shape[1] < 3:

@@ -36,10 +36,7 @@ class Level(NamedTuple):
 
 
 def level_before(up: Array, top: int) -> Level:
-    """Return the level just before the pulse that peaks at sample `top` of a record (n,).
-
-    Upwards.
-    """
+    """Return the level before the pulse that peaks upwards at sample `top` of a record (n,)."""
     noise = robust_std(np.diff(up)) / math.sqrt(2.0)
     low = float(np.percentile(up[: top + 1], 5.0))
     height = float(up[top]) - low
