@@ -94,8 +94,7 @@ def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: 
         predicted = float(fit.regression.prediction_std(design).mean())
         if abs(off) < RULES.no_chance * np.hypot(fit.sigma / np.sqrt(size), predicted):
             break
-        used = rest[fit.regression.used]
-        piece = Piece(used, fit.reference, fit.launch, fit.regression.sigma)
+        piece = Piece(rest[fit.regression.used], fit.reference, fit.launch, fit.regression.sigma)
     return piece
 
 
@@ -132,8 +131,7 @@ def _clean_starts(track: Track, order: Indices, size: int) -> list[int]:
         spreads.append(np.inf if upward else fit.sigma)
         offsets.append(offset)
         offset += max(1, offset // 2)
-    best = min(spreads, default=np.inf)
-    limit = 1.5 * max(best, track.noise)
+    limit = 1.5 * max(min(spreads, default=np.inf), track.noise)
     clean = [o for o, s in zip(offsets, spreads, strict=True) if s <= limit]
     clean = clean or [0]
     return sorted({clean[0], clean[len(clean) // 2], clean[-1]})

@@ -135,8 +135,7 @@ def _drifts(
     height = np.array([h.value for _, h in contacts])
     error = np.array([h.std for _, h in contacts])
     late = time - time.mean()
-    level = float(np.average(height, weights=error**-2.0))
-    rest = height - level
+    rest = height - np.average(height, weights=error**-2.0)
     found = []
     for width in RULES.drift_widths:
         std = width * abs(fall)

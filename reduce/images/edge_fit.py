@@ -156,9 +156,8 @@ def _settle(
         spread = max(robust_std(residual), 0.3)
         weight = np.minimum(1.0, RULES.doubtful * spread / np.maximum(np.abs(residual), 1e-12))
         active = jacobian[moved][:, zone]
-        normal = (active * weight) @ active.T
         try:
-            move = np.linalg.inv(normal) @ (active @ (weight * residual))
+            move = np.linalg.inv((active * weight) @ active.T) @ (active @ (weight * residual))
         except np.linalg.LinAlgError:
             return None
         if not np.all(np.isfinite(move)):

@@ -97,8 +97,7 @@ def _qualisys(rows: list[list[str]], source: str) -> Export:
     width = max((len([c for c in row if c]) for row in body), default=0)
     before = max(width - 3 * len(names), 0)  # frame and time, where they were exported
     found = {n: [before + 3 * k + a for a in (1, 2, 3)] for k, n in enumerate(names)}
-    counted = [[str(k), *row] for k, row in enumerate(body)]
-    return _export(counted, found, 0, rate, "mm", source)
+    return _export([[str(k), *row] for k, row in enumerate(body)], found, 0, rate, "mm", source)
 
 
 def _opensim(rows: list[list[str]], source: str) -> Export:

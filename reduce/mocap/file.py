@@ -129,18 +129,16 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
         raise missing_extra("reading C3D files", "mocap")
     points, residuals, labels, stated, rates = confined(_c3d_content, path, source=str(path))
     labels += [f"M{k + 1}" for k in range(len(labels), points.shape[1])]
-    said = unit or (stated[0] if stated else "")
-    factor = metres(said, source=str(path), allowed=UNITS)
+    factor = metres(unit or (stated[0] if stated else ""), source=str(path), allowed=UNITS)
     hertz = rate or (rates[0] if rates else 0.0)
     if not 0.0 < hertz < math.inf:
         raise InputError(
             "the file does not say its frame rate", source=str(path), key="frame_rate_hz",
             allowed="frames per second",
         )  # fmt: skip
-    position = np.moveaxis(points, 0, 2).transpose(1, 0, 2) * factor
+    position = points.T * factor
     position[(residuals.T < 0.0)] = np.nan
-    time = np.arange(position.shape[0]) / hertz
-    return Markers(time, tuple(labels), position, str(path))
+    return Markers(np.arange(position.shape[0]) / hertz, tuple(labels), position, str(path))
 
 
 def _c3d_content(path: Path) -> tuple[Array, Array, list[str], list[str], list[float]]:
@@ -242,10 +240,9 @@ def _poses(
 
 
 def _times(table: Columns, rate: float | None) -> Array:
-    rows = len(table.values)
     if rate is not None:
         frames = [_numbers(table, [n])[:, 0] for n in table.names if _FRAME.fullmatch(n)]
-        return np.asarray((frames[0] if frames else np.arange(rows)) / rate)
+        return np.asarray((frames[0] if frames else np.arange(len(table.values))) / rate)
     for name in table.names:
         found = _TIME.fullmatch(name)
         if found is not None:

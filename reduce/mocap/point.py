@@ -152,8 +152,7 @@ def _side(
     fits = [robust_regression(design, position[index, k]) for k in range(3)]
     velocity = np.array([f.coefficients[1] for f in fits])
     covariance = np.diag([f.covariance[1, 1] for f in fits])
-    coefficients = np.array([f.coefficients for f in fits])
-    side = Side(velocity, covariance, time[index], coefficients)
+    side = Side(velocity, covariance, time[index], np.array([f.coefficients for f in fits]))
     return side, float(np.mean([f.sigma for f in fits]))
 
 

@@ -172,8 +172,7 @@ def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Mo
         when = _meeting(one, two, time, extent)
         return _numbers(one, two, float(np.clip(when, low, high)), body, scene.up, plane)
 
-    covariance = flights.part((f, f + 1))
-    found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), covariance))
+    found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), flights.part((f, f + 1))))
     if math.isinf(body.inertia_over_mass):  # not known: nothing to hold the spin against
         del found["spin_change_by_momentum_rad_s"]
     return Hit((f, f + 1), found, plane[0], gap)

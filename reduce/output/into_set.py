@@ -70,8 +70,7 @@ def store(
         # a reader need not label its trials: no row may take another one's place
         apart = len({trial.label for trial in reduced.trials}) == len(reduced.trials)
         for k, trial in enumerate(reduced.trials, start=1):
-            parts = (own, trial.label, "" if apart else str(k))
-            name = "-".join(filter(None, parts))
+            name = "-".join(filter(None, (own, trial.label, "" if apart else str(k))))
             if not names_a_file(name):  # a label may be the raw file's own
                 raise InputError(repr(name), key="trial", allowed=ALLOWED)
             after = _with_trial(after, name, striker, trial, row)

@@ -154,8 +154,7 @@ def _press(
     load_std: float, noise: float,
 ) -> ReducedPress:  # fmt: skip
     top = slice(cycle.begin, max(cycle.turn, cycle.begin) + 1)
-    scatter = noise_of(depth)
-    under = Measured(float(depth[top].max()), scatter)
+    under = Measured(float(depth[top].max()), noise_of(depth))
     end = left_depth(load, depth, cycle, noise)
     # what the machine's error moves, it moves in proportion to the load
     machine = own.std * cycle.peak

@@ -55,8 +55,7 @@ def _map(axis: Any, result: Crater, made: Any) -> None:
         vmin=-limit, vmax=limit, interpolation="nearest",
     )  # fmt: skip
     x, y = (UM * h * np.arange(n) for h, n in zip(step, z.shape, strict=True))
-    crater = result.surface.crater.T.astype(float)
-    axis.contour(x, y, crater, [0.5], colors="k", linewidths=0.8)
+    axis.contour(x, y, result.surface.crater.T.astype(float), [0.5], colors="k", linewidths=0.8)
     left_out = binary_opening(~result.surface.clear, iterations=2)  # without the spikes
     axis.contour(x, y, left_out.T.astype(float), [0.5], colors="g", linewidths=0.5)
     deep = UM * result.deepest

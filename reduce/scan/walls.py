@@ -31,8 +31,7 @@ def section(found: Levelled, place: Array, direction: float, half_width: float) 
     normal = np.array([-axis[1], axis[0]])
     size = float(np.hypot(*(np.array(found.z.shape) * found.step)))
     s = np.arange(-size, size, float(found.step.min()))
-    band = _BAND * half_width
-    points = place + s[:, None, None] * axis + band[None, :, None] * normal
+    points = place + s[:, None, None] * axis + (_BAND * half_width)[None, :, None] * normal
     at = (points / found.step).transpose(2, 0, 1)
     z = ndimage.map_coordinates(filled(found.z), at, order=1, mode="constant", cval=np.nan)
     mean = z.mean(axis=1)

@@ -64,8 +64,7 @@ def _rise_db(heard: Array, rate: float) -> Array:
 def _pick(heard: Array, peak: int, rate: float) -> tuple[float, float]:
     """Onset near a sample and its standard deviation [s]."""
     first = max(peak - round(RULES.onset_search[0] * rate), 0)
-    last = min(peak + round(RULES.onset_search[1] * rate), heard.size)
-    part = heard[first:last]
+    part = heard[first : peak + round(RULES.onset_search[1] * rate)]
     n = part.size
     k = np.arange(4, n - 4)
     if k.size < 4:

@@ -136,6 +136,5 @@ def since_first(instants: Array) -> Array:
         return instants
     after: Array = instants - instants[known[0]]
     if np.nanmax(np.abs(instants)) <= DAY:
-        back = np.diff(after[known], prepend=0.0) < -0.5 * DAY
-        after[known] += DAY * np.cumsum(back)
+        after[known] += DAY * np.cumsum(np.diff(after[known], prepend=0.0) < -0.5 * DAY)
     return after

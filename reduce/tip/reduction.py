@@ -92,8 +92,7 @@ def reduce_tip(
     off = np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
     blur = float(np.median(edge.blur[used]))
     std = radius_std(points, used, (x, y, radius))
-    angles = np.arctan2(points[used, 0] - x, points[used, 1] - y)
-    arc = float(np.ptp(angles))
+    arc = float(np.ptp(np.arctan2(points[used, 0] - x, points[used, 1] - y)))
     true = Measured(radius + 0.5 * blur**2 / radius, std)
     size = scale
     if size is None and diameter is not None and math.isfinite(width.value):

@@ -88,8 +88,7 @@ class VideoReduction:
 
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each contact."""
-        names = labels(len(self.bounces))
-        return tuple(self._trial(k, label) for k, label in enumerate(names))
+        return tuple(self._trial(k, label) for k, label in enumerate(labels(len(self.bounces))))
 
     def _trial(self, k: int, label: str) -> Trial:
         bounce, part = self.bounces[k], self.found.part(k)
