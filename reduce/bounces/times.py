@@ -66,7 +66,6 @@ def reduce_bounce_times(
     """Return the bounces behind a list of instants of contact.
 
     - `times`: (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
-    - `options`: what is known of the ball.
     - `std`: (n,) standard deviations of the times [s]; None takes them from the scatter of the
       intervals about a smooth course, which is part of them in any case.
 
@@ -190,9 +189,8 @@ def _between(
     sigma = spread[list(three)]
     half = 0.5 * down.gravity
     return BouncedTimes(
-        three[1] + 1,
-        float(times[three[1]]),
+        three[1] + 1, float(times[three[1]]),
         Measured(approach, half * math.hypot(sigma[0], sigma[1])),
         Measured(rebound, half * math.hypot(sigma[1], sigma[2])),
         Measured(ratio, ratio * float(np.linalg.norm(part * sigma))),
-    )
+    )  # fmt: skip

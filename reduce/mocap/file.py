@@ -254,10 +254,9 @@ def _times(table: Columns, rate: float | None) -> Array:
                 )  # fmt: skip
             return time * (1e-3 if found["unit"] == "ms" else 1.0)
     raise InputError(
-        f"no column of time among {', '.join(table.names[:12])}",
-        source=table.source,
+        f"no column of time among {', '.join(table.names[:12])}", source=table.source,
         allowed="time_s, or the option frame_rate_hz",
-    )
+    )  # fmt: skip
 
 
 def _groups(table: Columns) -> dict[str, dict[str, tuple[str, str | None]]]:

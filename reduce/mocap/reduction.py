@@ -161,10 +161,9 @@ def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) ->
 
 def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: MocapScene) -> Hit:
     before, after = flights.motions[f], flights.motions[f + 1]
-    guess = 0.5 * (poses.time[flights.spans[f][1]] + poses.time[flights.spans[f + 1][0]])
     extent = max(poses.extent, 1e-3)
     low, high = poses.time[flights.spans[f][1]], poses.time[flights.spans[f + 1][0]]
-    time = float(np.clip(_meeting(before, after, float(guess), extent), low, high))
+    time = float(np.clip(_meeting(before, after, float(0.5 * (low + high)), extent), low, high))
     plane = _plane(before, after, time, body, scene.up)
 
     def numbers(step: Array) -> Array:
