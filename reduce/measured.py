@@ -39,9 +39,8 @@ class Measured:
 
     def times(self, other: Measured) -> Measured:
         """Return the product with an independent value."""
-        return Measured(
-            self.value * other.value, math.hypot(self.std * other.value, self.value * other.std)
-        )
+        std = math.hypot(self.std * other.value, self.value * other.std)
+        return Measured(self.value * other.value, std)
 
     def over(self, other: Measured) -> Measured:
         """Return the quotient by an independent value."""

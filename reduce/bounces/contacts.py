@@ -129,9 +129,8 @@ def _believed(found: Bounced, source: str) -> Bounced:
             f"no restitution is known: {said}", source=source,
             allowed="flights before and after a contact that tell one between 0 and 1",
         )  # fmt: skip
-    return replace(
-        found, bounces=kept, notes=(*found.notes, f"left out, no restitution is known: {said}")
-    )
+    notes = (*found.notes, f"left out, no restitution is known: {said}")
+    return replace(found, bounces=kept, notes=notes)
 
 
 def find_bounces(

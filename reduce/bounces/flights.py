@@ -201,9 +201,8 @@ def _fitted(track: Track, index: Indices, stage: Stage, view: View | None) -> _F
             fit = robust_regression(design, left, floor=tiny)
             launch = Launch(*(float(v) for v in np.add(launch, fit.coefficients)))
     # a flight that has taken in what is none would take in more
-    return _Fit(
-        stage, view, reference, launch, fit, min(fit.sigma, RULES.flight_noise * track.noise)
-    )
+    sigma = min(fit.sigma, RULES.flight_noise * track.noise)
+    return _Fit(stage, view, reference, launch, fit, sigma)
 
 
 def own_fall(track: Track, piece: Piece) -> Measured:

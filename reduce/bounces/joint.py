@@ -136,9 +136,8 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     kept = []
     for k, piece in enumerate(pieces):
         launch = Launch(*x[SHARED + 2 * k : SHARED + 2 * k + 2])
-        left = track.height[piece.index] - stage.seen(
-            view, launch, piece.reference, track.time[piece.index]
-        )
+        seen = stage.seen(view, launch, piece.reference, track.time[piece.index])
+        left = track.height[piece.index] - seen
         usual = max(robust_std(left, lost=2), track.floor, 1e-9 * stage.reach)
         good = np.abs(left - np.median(left)) <= RULES.no_chance * usual
         good &= _untrimmed(left / usual)
@@ -150,9 +149,8 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     pooled = float(np.median([s / f for s, f in zip(squares, freedom, strict=True)]))
     result = []
     for (piece, launch, left, index), s, f in zip(kept, squares, freedom, strict=True):
-        variance = (
-            (s + RULES.pooled * pooled) / (f + RULES.pooled) * long_run_factor(left, lost=2.5)
-        )
+        together = long_run_factor(left, lost=2.5)
+        variance = (s + RULES.pooled * pooled) / (f + RULES.pooled) * together
         sigma = max(float(np.sqrt(variance)), track.floor, 1e-9 * stage.reach)
         result.append(replace(piece, index=index, launch=launch, sigma=sigma))
     return result

@@ -132,17 +132,13 @@ def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
         for frame in container.decode(video=0):
             stamp = np.nan if frame.pts is None else float(frame.pts * frame.time_base)
             pixels = frame.to_ndarray(format="gray" if channel == "grey" else "rgb24")
-            turned = np.rot90(
-                one_channel(pixels, channel), int(getattr(frame, "rotation", 0)) // 90
-            )
-            yield stamp, turned
+            turns = int(getattr(frame, "rotation", 0)) // 90
+            yield stamp, np.rot90(one_channel(pixels, channel), turns)
 
 
 def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
-    names = sorted(
-        (p for p in path.iterdir() if p.suffix.lower() in PICTURES),
-        key=lambda p: natural_order(p.name),
-    )
+    found = [p for p in path.iterdir() if p.suffix.lower() in PICTURES]
+    names = sorted(found, key=lambda p: natural_order(p.name))
     if not names:
         raise InputError("no pictures in it", source=str(path), allowed=" ".join(PICTURES))
     for name in names:

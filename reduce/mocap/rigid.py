@@ -82,9 +82,8 @@ def rigid_poses(markers: Markers) -> Poses:
             allowed="10 or more",
         )  # fmt: skip
     line = _is_line(shape)
-    origins: list[Array] = []
     turns: list[Array] = []
-    factors, misfits = [], []
+    origins, factors, misfits = [], [], []
     for k in frames:
         body, found = shape[seen[k]], points[k, seen[k]]
         origin, turn = kabsch(body, found)

@@ -195,9 +195,8 @@ def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured 
         found.append((best[0], sigma * math.sqrt(unit_covariance(design * weight)[0, 0])))
     (first, first_std), (second, second_std) = found
     middle = 0.5 * (first + second)
-    return Measured(
-        max(float(middle), 0.0), math.hypot(max(first_std, second_std), 0.5 * (first - second))
-    )
+    std = math.hypot(max(first_std, second_std), 0.5 * (first - second))
+    return Measured(max(float(middle), 0.0), std)
 
 
 def _told(record: PressRecord, presses: tuple[ReducedPress, ...]) -> list[str]:

@@ -73,9 +73,8 @@ def without_band(length: Measured, width: Measured, half_width: float) -> tuple[
     short = half_width * float(np.mean(_BAND**2))
     straight = (length.value - width.value) / (2.0 * _BAND[-1] * half_width)
     bent = min(max(1.0 - straight, 0.0), 1.0)
-    return Measured(length.value + short, length.std), Measured(
-        width.value + bent * short, width.std
-    )
+    wider = Measured(width.value + bent * short, width.std)
+    return Measured(length.value + short, length.std), wider
 
 
 def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Measured | None:

@@ -173,13 +173,8 @@ def _of_text(
     utf8 = raw.decode(errors="ignore").encode() == raw
     if not utf8 and not wide_coding(raw):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
-    every = [
-        [
-            "\n" if _RULER.fullmatch(line.strip()) else line
-            for line in text.splitlines(keepends=True)
-        ]
-        for text in texts
-    ]
+    each = [text.splitlines(keepends=True) for text in texts]
+    every = [["\n" if _RULER.fullmatch(line.strip()) else line for line in one] for one in each]
     tried = [
         (lines, between, head_of(_typed(rows), given).known)
         for lines in every for one in ("", ";", "\t", ",", "|", WIDE)

@@ -74,9 +74,8 @@ class SheetColumn:
     def no_unit(self) -> str:
         """What is wrong with the header's unit."""
         said = kinds.said_unit(self.header)
-        return f"{said!r} is no unit of {self.kind.quantity} that is known" if said else (
-            "the header names no unit"
-        )  # fmt: skip
+        other = f"{said!r} is no unit of {self.kind.quantity} that is known"
+        return other if said else "the header names no unit"
 
 
 @dataclass(frozen=True)
