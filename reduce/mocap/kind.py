@@ -14,14 +14,14 @@ from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .body import BodyFile, make_body
 from .file import Markers, read_markers
-from .options import Options
+from .options import MocapOptions
 from .picture import draw_mocap, draw_point
 from .point import PointBounce, reduce_point
 from .reduction import Hit, MocapScene, reduce_mocap
 from .rigid import rigid_poses
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: MocapOptions) -> Reduced:
     """Fit a rigid body to the markers and read its motion before and after each impact."""
     places = read_model(Path(options.body), BodyFile).markers if options.body else {}
     markers = read_markers(
@@ -59,7 +59,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _point(path: Path, markers: Markers, scene: MocapScene, options: Options) -> Reduced:
+def _point(path: Path, markers: Markers, scene: MocapScene, options: MocapOptions) -> Reduced:
     axes, height = ("time [s]", "height of the marker [m]"), markers.position[:, 0] @ scene.up
     with drawn_if_refused(markers.time, height, axes=axes):
         found = reduce_point(markers, scene, spin=options.spin)

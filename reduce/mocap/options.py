@@ -18,7 +18,7 @@ def _markers(text: str) -> tuple[str, ...]:
     return tuple(n.strip() for n in text.split(":") if n.strip())
 
 
-class Options(InputTable):
+class MocapOptions(InputTable):
     """Options of the reduction of motion capture."""
 
     shape: Literal["rod", "sphere", "body"] = Field(
@@ -51,7 +51,7 @@ class Options(InputTable):
     )
 
     @model_validator(mode="after")
-    def _sizes(self) -> Options:
+    def _sizes(self) -> MocapOptions:
         if self.shape != "body" and self.tip_radius_m is None:
             raise ValueError("tip_radius_m is needed: the radius of the tip or of the sphere")
         if self.shape == "rod" and self.length_m is None:
@@ -91,3 +91,7 @@ class Options(InputTable):
     def two_ends(self) -> tuple[str, ...]:
         """The two markers along the rod."""
         return _markers(self.axis)
+
+
+Options = MocapOptions
+"""By this name a kind is found."""

@@ -28,7 +28,7 @@ from ..table.file import (
 from ..table.packed import TABLE_BYTES
 from ..table.sheet.words import bare
 from ..table.workbook import sheets_of
-from .options import Options
+from .options import PressOptions
 
 _LOADS = (
     r"(load|force|.*kraft|last|fn|p|f)\b",
@@ -69,7 +69,7 @@ class PressRecord:
     source: str
 
 
-def read_press(path: Path, options: Options) -> PressRecord:
+def read_press(path: Path, options: PressOptions) -> PressRecord:
     """Read load and depth of a machine's file; refuse what has neither in known units."""
     tables = list(_tables(path, options))
     found = next((t for t in tables if _has_both(t, options)), tables[0])
@@ -94,11 +94,11 @@ def read_press(path: Path, options: Options) -> PressRecord:
     return PressRecord(p, h, int((~known).sum()), gap, _compliance(tables), str(path))
 
 
-def _wanted(options: Options) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:
+def _wanted(options: PressOptions) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:
     return ("load", options.load, _LOADS, "force"), ("depth", options.depth, _DEPTHS, "length")
 
 
-def _tables(path: Path, options: Options) -> Iterator[Columns]:
+def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     """Yield the tables of a file: instruments write several below each other into one text."""
     checked_file(path, most=TABLE_BYTES, allowed="a table of load against depth")
     if path.suffix.lower() in (*BOOKS, *CHANNELS, ".zip"):
@@ -122,7 +122,7 @@ def _tables(path: Path, options: Options) -> Iterator[Columns]:
         yield columns_of(rows[begin:end], str(path))
 
 
-def _has_both(table: Columns, options: Options) -> bool:
+def _has_both(table: Columns, options: PressOptions) -> bool:
     return all(
         given or _named(table, words, quantity) is not None
         for _key, given, words, quantity in _wanted(options)
@@ -143,7 +143,7 @@ def _named(table: Columns, words: Sequence[str], quantity: str) -> int | None:
 
 def _column(
     table: Columns, key: str, given: str, words: Sequence[str], quantity: str, path: Path,
-    options: Options,
+    options: PressOptions,
 ) -> int:  # fmt: skip
     if given:
         return table.find(given, key=key)

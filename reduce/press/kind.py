@@ -8,12 +8,12 @@ from ..measured import Measured, labelled, labels
 from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .columns import read_press
-from .options import Options
+from .options import PressOptions
 from .picture import draw_press
 from .reduction import reduce_press
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: PressOptions) -> Reduced:
     """Measure the presses of a record."""
     record = read_press(path, options)
     given, std = options.machine_compliance_m_N, options.machine_compliance_m_N_std

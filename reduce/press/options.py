@@ -9,7 +9,7 @@ from pydantic import Field
 from ..shared.time_window import TimeWindow
 
 
-class Options(TimeWindow):
+class PressOptions(TimeWindow):
     """Options of the reduction of a press."""
 
     load: str = Field(
@@ -33,3 +33,7 @@ class Options(TimeWindow):
         0.0, ge=0.0, description="standard deviation of the load cell at the largest load"
     )
     tip_radius_m: float | None = Field(None, gt=0, le=1, description="of the ball, of a new set")
+
+
+Options = PressOptions
+"""By this name a kind is found."""

@@ -12,11 +12,11 @@ from ..reduced import Reduced
 from .ball import reduce_ball
 from .crater import Crater, reduce_scan
 from .file import Scan, read_scan
-from .options import Options
+from .options import ScanOptions
 from .picture import draw_ball, draw_crater
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: ScanOptions) -> Reduced:
     """Measure the deepest crater of a scan, or the radius of a ball."""
     scan = read_scan(
         path, unit=None if options.unit == "file" else options.unit,
@@ -36,7 +36,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _ball(path: Path, scan: Scan, options: Options) -> Reduced:
+def _ball(path: Path, scan: Scan, options: ScanOptions) -> Reduced:
     found = reduce_ball(scan, reach=options.reach_m)
     # a radius is a length squared over a height
     radius = found.radius.over(Measured(options.height_scale, options.height_scale_std))

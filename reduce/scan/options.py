@@ -9,7 +9,7 @@ from pydantic import Field
 from ...core.inputs.toml_input import InputTable
 
 
-class Options(InputTable):
+class ScanOptions(InputTable):
     """Options of the reduction of a scan."""
 
     shows: Literal["crater", "ball"] = Field(
@@ -36,3 +36,7 @@ class Options(InputTable):
     reach_m: float | None = Field(
         None, gt=0.0, description="of a ball: distance from the top that is used; default: all"
     )
+
+
+Options = ScanOptions
+"""By this name a kind is found."""

@@ -15,11 +15,11 @@ from ..reduced import Reduced
 from ..rules import RULES
 from .file import Sound, read_sound
 from .onsets import find_onsets
-from .options import Options
+from .options import SoundOptions
 from .picture import draw_sound
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: SoundOptions) -> Reduced:
     """Time the contacts by their sound and return the restitution of each bounce."""
     sound = _part(read_sound(path), options)
     check_level(sound)
@@ -52,7 +52,7 @@ def check_level(sound: Sound) -> None:
         )  # fmt: skip
 
 
-def _part(sound: Sound, options: Options) -> Sound:
+def _part(sound: Sound, options: SoundOptions) -> Sound:
     part = sound.samples[options.keeps(sound.time)]
     if part.size < 0.1 * sound.rate:
         raise InputError(

@@ -8,7 +8,7 @@ from ..bounces.options import BounceOptions
 from ..shared.time_window import TimeWindow
 
 
-class Options(BounceOptions, TimeWindow):
+class SoundOptions(BounceOptions, TimeWindow):
     """Options of the reduction of a sound."""
 
     least_rise_db: float = Field(
@@ -18,3 +18,7 @@ class Options(BounceOptions, TimeWindow):
         0.02, gt=0.0, description="shortest time between two contacts; echoes come sooner"
     )
     lowest_hz: float = Field(300.0, gt=0.0, description="lower frequencies are taken out")
+
+
+Options = SoundOptions
+"""By this name a kind is found."""

@@ -15,13 +15,13 @@ from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from ..rules import RULES
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 from .picture import draw_pulse
 from .pulse import Pulse, find_pulse
 from .series import Series, no_number, series_of
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Measure the largest pulse of a record.
 
     The impulse that is more than the weight's turns the momentum of the approach round: e = (J/m -
@@ -48,7 +48,7 @@ def reduce(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _scale(table: Columns, column: int, options: Options, source: str) -> float:
+def _scale(table: Columns, column: int, options: TableOptions, source: str) -> float:
     """Newtons or m/s² that one of the column's unit is worth."""
     if options.gain is not None:
         return options.gain
@@ -61,7 +61,7 @@ def _scale(table: Columns, column: int, options: Options, source: str) -> float:
 
 
 def _numbers(
-    pulse: Pulse, options: Options, source: str
+    pulse: Pulse, options: TableOptions, source: str
 ) -> tuple[dict[str, Measured], dict[str, Measured]]:
     """Everything that a pulse tells, and what of it makes a row."""
     mass, row = options.mass_kg, {"contact_time_s": pulse.duration}

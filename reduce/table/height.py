@@ -13,12 +13,12 @@ from ..measured import Measured, Trial, labelled, labels
 from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 from .picture import draw_heights
 from .series import series_of
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Fit the flights of a track and read the speeds at its contacts."""
     series = series_of(table, options)
     time, column = series.time, series.column

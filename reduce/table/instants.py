@@ -11,10 +11,10 @@ from ..bounces.picture import draw_times
 from ..bounces.times import reduce_bounce_times
 from ..reduced import Reduced
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return the bounces behind a column of three or more instants that increase."""
     column = table.find(options.time, key="time")
     unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..reduced import Reduced
 from .file import read_columns
-from .options import Options
+from .options import TableOptions
 
 _READ_BY = {
     "force": "force", "acceleration": "force", "height": "height", "bounces": "instants",
@@ -16,7 +16,7 @@ _READ_BY = {
 """The module of what a table holds, loaded when one is read: some take longer than the file."""
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: TableOptions) -> Reduced:
     """Measure what a table holds."""
     if options.holds == "trials":
         from .sheet import read_sheet

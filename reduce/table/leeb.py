@@ -11,14 +11,14 @@ from ...core.errors import InputError, InputErrors
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 from .picture import draw_trials
 
 _LEEB_SPEED = 2.05
 """Approach of the body of a device D [m/s] (ISO 16859-1)."""
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return a trial for each number, from 0 to 1000, of a column and of all after it."""
     value = options.value if len(table.names) > 1 else "1"
     first, speed = table.find(value, key="value"), options.approach_speed_m_s

@@ -14,7 +14,7 @@ Holds = Literal[
 ]
 
 
-class Options(BounceOptions, TimeWindow):
+class TableOptions(BounceOptions, TimeWindow):
     """Options of the reduction of a table."""
 
     holds: Holds = Field(
@@ -73,3 +73,7 @@ class Options(BounceOptions, TimeWindow):
         description="normal speed before the pulse; with mass_kg gives the restitution",
     )  # fmt: skip
     approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+
+
+Options = TableOptions
+"""By this name a kind is found."""

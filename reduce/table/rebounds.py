@@ -15,13 +15,13 @@ from ..reduced import Reduced
 from ..rules import RULES
 from ..shared.units import LENGTH, quantity_of
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 from .picture import draw_trials
 from .sheet.kinds import MEAN, SUMMARY, is_spread, kind_of
 from .sheet.words import APPROACHES, REBOUND_HEIGHT, bare
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return a trial for each rebound height beside a drop height that is not below it.
 
     The drop heights stand in a column that is named so, or given; rebounds of the repeats in all

@@ -15,7 +15,7 @@ from ..rules import RULES
 from ..shared.units import HERTZ, LARGEST_NUMBER, TIME
 from .cells import DAY
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 
 
 class Series(NamedTuple):
@@ -59,7 +59,7 @@ def _counts(column: Array) -> bool:
     return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
 
 
-def series_of(table: Columns, options: Options) -> Series:
+def series_of(table: Columns, options: TableOptions) -> Series:
     """Times and numbers of the part that is used, and the cells in it that hold no number."""
     alone = table.values.shape[1] == 1
     chosen = "value" in options.model_fields_set or not alone
@@ -96,7 +96,7 @@ def _stated_rate(table: Columns) -> float | None:
     return (number if unit in HERTZ else 1.0 / number) if number > 0.0 else None
 
 
-def _times(table: Columns, options: Options, *, alone: bool) -> Array:
+def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     """Times of all rows [s]: of their column, or of rows that are as far apart as is said."""
     rows = np.arange(table.values.shape[0], dtype=float)
     if alone:

@@ -24,7 +24,7 @@ from ..reduced import Reduced
 from ..rules import RULES
 from ..shared.units import LENGTH, UNITS
 from .file import Columns
-from .options import Options
+from .options import TableOptions
 from .picture import draw_tension
 from .rise import elastic_rise
 from .series import no_number
@@ -52,7 +52,7 @@ class TensionReduction:
     notes: tuple[str, ...]
 
 
-def reduce(path: Path, table: Columns, options: Options) -> Reduced:
+def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return the flow curve of a tension or compression test."""
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts, unit = _strain_unit(table, at, options), _stress_unit(table, value, options)
@@ -75,7 +75,7 @@ def reduce(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _stress_unit(table: Columns, column: int, options: Options) -> float:
+def _stress_unit(table: Columns, column: int, options: TableOptions) -> float:
     """Return the stress that one of a column's unit is worth [Pa].
 
     A column of loads is divided by the specimen's area: as given, or from the header's line `Area`
@@ -101,7 +101,7 @@ def _said(table: Columns, word: str, units: Mapping[str, float]) -> float:
     return number * units.get(unit, 0.0)
 
 
-def _strain_unit(table: Columns, column: int, options: Options) -> float:
+def _strain_unit(table: Columns, column: int, options: TableOptions) -> float:
     """Return the strain that one of a column's unit is worth.
 
     A column of extensions is divided by the gauge length: as given in mm, or from the header's line

@@ -10,12 +10,12 @@ import numpy as np
 from ..images.picture_file import DOWN, crop_window, cropped, read_picture
 from ..measured import Measured
 from ..reduced import Reduced
-from .options import Options
+from .options import TipOptions
 from .picture import draw_tip
 from .reduction import TipReduction, reduce_tip
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: TipOptions) -> Reduced:
     """Fit a circle to the tip and return its radius."""
     picture = np.rot90(read_picture(path, channel=options.channel), DOWN[options.tip_points])
     picture = cropped(picture, crop_window(options.crop))

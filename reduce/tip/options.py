@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from ..images.options import PictureOptions
 
 
-class Options(PictureOptions):
+class TipOptions(PictureOptions):
     """Options of the reduction of a photograph."""
 
     shape: Literal["rod", "sphere"] = Field("rod", description="a rod, or a ball wholly in view")
@@ -19,7 +19,11 @@ class Options(PictureOptions):
     )
 
     @model_validator(mode="after")
-    def _diameter_of_a_rod(self) -> Options:
+    def _diameter_of_a_rod(self) -> TipOptions:
         if self.diameter_m is not None and self.shape == "sphere":
             raise ValueError("diameter_m is a rod's; give pixel_m for a ball")
         return self
+
+
+Options = TipOptions
+"""By this name a kind is found."""

@@ -9,12 +9,12 @@ from ..images.clip import read_clip
 from ..images.picture_file import crop_window
 from ..measured import labelled
 from ..reduced import Reduced
-from .options import Options
+from .options import VideoOptions
 from .picture import draw_video
 from .reduction import Optics, reduce_video
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: VideoOptions) -> Reduced:
     """Track the striker and read its speeds before and after each contact."""
     last = options.last_frame
     if last is not None and last < options.first_frame:

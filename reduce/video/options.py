@@ -13,7 +13,7 @@ from ..images.options import PictureOptions
 _MOST_FRAMES = 10**9
 
 
-class Options(PictureOptions, BallOptions):
+class VideoOptions(PictureOptions, BallOptions):
     """Options of the reduction of a video."""
 
     frame_rate_hz: float = Field(ge=1e-3, le=1e10, description="the camera's own frames per second")
@@ -34,3 +34,7 @@ class Options(PictureOptions, BallOptions):
     last_frame: int | None = Field(
         None, ge=0, le=_MOST_FRAMES, description="number of the last one"
     )
+
+
+Options = VideoOptions
+"""By this name a kind is found."""
