@@ -8,8 +8,12 @@ raising: a computation that did not get there is a result with a reason, never a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
+from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 EXIT_INPUT_ERROR = 2
 """Exit code of the command line for a mistake in the input."""
@@ -110,10 +114,33 @@ def missing_extra(what: str, extra: str) -> InputError:
     )  # fmt: skip
 
 
+def optional(module: str, what: str, extra: str) -> Any:
+    """Return a module of an optional package; `what` needs it, where it is missing refused."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise missing_extra(what, extra) from None
+
+
 def first_line(error: BaseException) -> str:
     """Return what a library says of its failure, in one line; its kind where it says nothing."""
     lines = str(error).strip().splitlines()
     return lines[0][:120] if lines else type(error).__name__
+
+
+@contextmanager
+def reading(
+    path: Path, allowed: str, failed: str = "cannot be read", *, raised: Any = Exception
+) -> Iterator[None]:
+    """Refuse a file in which a library fails, by default in whatever way: each raises its own."""
+    try:
+        yield
+    except InputError:
+        raise
+    except raised as error:
+        raise InputError(
+            f"{failed} ({first_line(error)})", source=str(path), allowed=allowed
+        ) from None
 
 
 class Ending(Enum):

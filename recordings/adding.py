@@ -63,8 +63,7 @@ def _joined(old: TextTable, new: TextTable, *, session: float) -> str:
     columns = list(dict.fromkeys((*old.columns, *new.columns, "batch")))
     # the head of trials.csv may have been copied: a column without an entry says nothing
     cells: dict[str, Sequence[str]] = {k: x for k, x in new.cells.items() if any(x)}
-    batch = cells.get("batch", ("",) * len(new.rows))
-    cells["batch"] = [x or f"{session:g}" for x in batch]
+    cells["batch"] = [x or f"{session:g}" for x in cells.get("batch", ("",) * len(new.rows))]
     if "order" in old.columns and "order" not in cells:
         last = max((float(x) for x in old.cells["order"] if x), default=0.0)
         cells["order"] = [f"{last + k:g}" for k in range(1, len(new.rows) + 1)]

@@ -26,9 +26,8 @@ class Noise:
 
 
 def noise_of(
-    name: str, values: Array, stated: Array | None, table: Mapping[str, float],
-    groups: Indices,
-) -> Noise:  # fmt: skip
+    name: str, values: Array, stated: Array | None, table: Mapping[str, float], groups: Indices
+) -> Noise:
     """Return the noise of one observable (n,): column, then set.toml, then repeats.
 
     `stated` is the column `NAME_std` (n,) or `None`; in `table`, `[noise]` of set.toml, `NAME` and

@@ -181,12 +181,9 @@ class RecordingSet:
         given = trials.approach_tangential_m_s
         along = np.where(trials.pressed, 0.0, np.where(np.isnan(given), along, given))
         return ApproachMotion(
-            normal=normal,
-            normal_std=std,
-            angle=np.where(rod, angle, np.pi / 2.0),
-            tangential=along,
-            spin=np.nan_to_num(trials.approach_spin_rad_s, nan=0.0),
-        )
+            normal=normal, normal_std=std, angle=np.where(rod, angle, np.pi / 2.0),
+            tangential=along, spin=np.nan_to_num(trials.approach_spin_rad_s, nan=0.0),
+        )  # fmt: skip
 
     @cached_property
     def load_std(self) -> Array:
@@ -209,11 +206,9 @@ class RecordingSet:
         trials = self.trials.take(rows)
         kept = set(trials.trial)
         return replace(
-            self,
-            trials=trials,
-            traces={k: v for k, v in self.traces.items() if k in kept},
+            self, trials=trials, traces={k: v for k, v in self.traces.items() if k in kept},
             profiles={k: v for k, v in self.profiles.items() if k in kept},
-        )
+        )  # fmt: skip
 
 
 def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:

@@ -23,9 +23,8 @@ class RecordingRules:
         "one spring under a half-sine",
     )  # fmt: skip
     bound_std: float = rule(
-        0.05, "relative standard deviation of such a bound [-]",
-        "what its formulas leave out",
-    )  # fmt: skip
+        0.05, "relative standard deviation of such a bound [-]", "what its formulas leave out"
+    )
     false_alarms_mass: float = rule(
         0.02, "part of clean sets in which a mass may be called wrong, over all strikers [-]",
     )  # fmt: skip
@@ -33,9 +32,8 @@ class RecordingRules:
         0.005, "the same of all other statistical checks of a set together [-]",
     )  # fmt: skip
     unstated_strength: float = rule(
-        0.15, "relative standard deviation of a strength stated without one [-]",
-        "a handbook's",
-    )  # fmt: skip
+        0.15, "relative standard deviation of a strength stated without one [-]", "a handbook's"
+    )
     rounding: float = rule(
         0.003, "relative standard deviation where mass, density and size are all exact [-]",
         "three digits",
@@ -49,9 +47,8 @@ class RecordingRules:
     )  # fmt: skip
     alone: float = rule(0.25, "part of the masses' false alarms that goes to single strikers [-]")
     angles_apart: float = rule(
-        2.0, "standard deviations between two readings of an angle [-]",
-        "one in twenty",
-    )  # fmt: skip
+        2.0, "standard deviations between two readings of an angle [-]", "one in twenty"
+    )
     mean_pressure: tuple[float, ...] = rule(
         (0.35, 1.3), "mean pressure of a press over a stated hardness, least and most [-]",
         "from first yield (1.1 S_y of 2.84 S_y) to metals that harden more than the test saw",
@@ -71,23 +68,18 @@ class RecordingRules:
     open_ends: float = rule(
         0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]"
     )
-    beyond: float = rule(
-        4.0, "standard deviations that are a mistake [-]",
-        "one in 15 000",
-    )  # fmt: skip
+    beyond: float = rule(4.0, "standard deviations that are a mistake [-]", "one in 15 000")
     trace_samples: int = rule(5, "samples of a contact from which an impulse is taken [-]")
     unstated_speed: float = rule(
         0.02, "relative standard deviation of an approach speed stated without one [-]"
     )
     repeats: int = rule(3, "trials at one condition from which a noise may be taken [-]")
     speed_bin: float = rule(
-        0.02, "relative width within which speeds are one condition [-]",
-        "a drop's repeats",
-    )  # fmt: skip
+        0.02, "relative width within which speeds are one condition [-]", "a drop's repeats"
+    )
     angle_bin: float = rule(
-        1.0, "width within which angles are one condition [degrees]",
-        "a protractor's",
-    )  # fmt: skip
+        1.0, "width within which angles are one condition [degrees]", "a protractor's"
+    )
     rate_bin: float = rule(
         0.5, "width in ln of a press's rate within which presses are one condition [-]",
         "strengths differ by a few per cent a decade",

@@ -14,18 +14,12 @@ from .columns import PROFILE_COLUMNS, TRACE_COLUMNS
 
 
 def read_trace(path: Path) -> Mapping[str, Array]:
-    """Return the columns of a trace, each of shape (n,), by name.
-
-    Every mistake is a line of one error.
-    """
+    """Return the columns of a trace, (n,) each, by name; every mistake is a line of one error."""
     return _read(path, TRACE_COLUMNS, needed=("time_s",), one_of=("tip_height_m", "force_N"))
 
 
 def read_profile(path: Path) -> Mapping[str, Array]:
-    """Return the columns `x_m` and `z_m` of a crater's cross-section.
-
-    Each of shape (n,), likewise.
-    """
+    """Return `x_m` and `z_m` of a crater's cross-section, (n,) each, likewise."""
     return _read(path, PROFILE_COLUMNS, needed=PROFILE_COLUMNS, one_of=())
 
 
@@ -53,11 +47,9 @@ def _read(
             known_steps = [i for i in back if np.isfinite(columns[first][i : i + 2]).all()]
             for i in known_steps[:1]:
                 problems.add(
-                    f"{columns[first][i + 1]:g} after {columns[first][i]:g}",
-                    row=table.rows[i + 1],
-                    column=first,
-                    allowed="a column that increases",
-                )
+                    f"{columns[first][i + 1]:g} after {columns[first][i]:g}", row=table.rows[i + 1],
+                    column=first, allowed="a column that increases",
+                )  # fmt: skip
     if problems.found:
         raise InputErrors(tuple(problems.found))
     for column in columns.values():

@@ -108,10 +108,9 @@ def _number(quantity: Quantity) -> Any:
 
 def _plain(table: BaseModel) -> dict[str, Any]:
     """What differs from the defaults, plain keys before tables."""
-    fields = type(table).model_fields
     given = {
         name: getattr(table, name)
-        for name, field in fields.items()
+        for name, field in type(table).model_fields.items()
         if field.is_required() or name == "shape" or getattr(table, name) != field.get_default(
             call_default_factory=True
         )

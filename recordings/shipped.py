@@ -32,8 +32,7 @@ def set_folder(given: Path) -> Path:
         return given
     if given.name not in shipped_sets():
         raise InputError(
-            "no such folder, and no shipped set of this name",
-            source=str(given),
+            "no such folder, and no shipped set of this name", source=str(given),
             allowed=f"a folder with set.toml, or one of {', '.join(shipped_sets())}",
-        )
+        )  # fmt: skip
     return FOLDER / given

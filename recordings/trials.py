@@ -141,10 +141,7 @@ def _column(values: npt.ArrayLike, n: int, name: str) -> Array:
 
 
 def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Trials | None:
-    """Read trials.csv; mistakes go to `problems`, and `None` comes back if there is no table.
-
-    `strikers` are the names that the column `striker` may hold.
-    """
+    """Read trials.csv of these `strikers`; mistakes go to `problems`; None if there is no table."""
     table = read_text_table(path, TRIAL_COLUMNS, problems, free=VARIED)
     return None if table is None else trials_in(table, strikers, problems)
 

@@ -41,9 +41,6 @@ KINDS = {
 """Each kind, named as its folder, and what it gives."""
 
 
-_TAKE_FOLDERS = ("video",)
-
-
 @dataclass(frozen=True)
 class Kind:
     """One way to reduce a file: its name, its options, and its module where another package's."""
@@ -55,7 +52,7 @@ class Kind:
     @property
     def takes_folders(self) -> bool:
         """Whether a folder may be one recording."""
-        return self.name in _TAKE_FOLDERS
+        return self.name == "video"
 
     def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""

@@ -39,9 +39,8 @@ class Measured:
 
     def times(self, other: Measured) -> Measured:
         """Return the product with an independent value."""
-        return Measured(
-            self.value * other.value, math.hypot(self.std * other.value, self.value * other.std)
-        )
+        std = math.hypot(self.std * other.value, self.value * other.std)
+        return Measured(self.value * other.value, std)
 
     def over(self, other: Measured) -> Measured:
         """Return the quotient by an independent value."""
@@ -91,9 +90,9 @@ def propagate(
     return tuple(Measured(float(v), float(s)) for v, s in zip(value, std, strict=True))
 
 
-def labels(count: int) -> list[str]:
-    """Return how the bounces of one file are told apart: not at all if there is one."""
-    return [""] if count == 1 else [f"bounce{k}" for k in range(1, count + 1)]
+def labels(count: int, of: str = "bounce") -> list[str]:
+    """Return how the bounces, or others, of one file are told apart: not at all if there is one."""
+    return [""] if count == 1 else [f"{of}{k}" for k in range(1, count + 1)]
 
 
 def labelled(each: Iterable[tuple[str, Mapping[str, Measured]]]) -> dict[str, Measured]:

@@ -173,9 +173,8 @@ class ReductionRules:
         0.05, "difference of the contacts' heights in the largest height at most [-]"
     )
     flight_samples: int = rule(
-        5, "samples of a flight at least [-]",
-        "a parabola and two that can contradict it",
-    )  # fmt: skip
+        5, "samples of a flight at least [-]", "a parabola and two that can contradict it"
+    )
     uneven_fall: float = rule(
         0.02, "change of the acceleration over a span without samples, in the fall [-]",
         "chosen: what drag of a light ball may do",
@@ -200,11 +199,7 @@ class ReductionRules:
     flight_reach: int = rule(
         2, "lengths of a flight's first part within which it is looked for next to the contact [-]"
     )
-    no_chance: float = rule(
-        4.0,
-        "standard deviations that are no chance [-]",
-        "one in 15 000",
-    )  # fmt: skip
+    no_chance: float = rule(4.0, "standard deviations that are no chance [-]", "one in 15 000")
     doubtful: float = rule(
         2.5,
         "standard deviations from which a sample next to a contact, or a frame of a flight, "
@@ -218,8 +213,7 @@ class ReductionRules:
     )  # fmt: skip
     fall_known: float = rule(0.1, "relative error of a fall from which it gives no scale [-]")
     drift_widths: tuple[float, ...] = rule(
-        (1e-4, 1e-3, 1e-2),
-        "widths of what is believed of a drift [speeds of a fall over a second]",
+        (1e-4, 1e-3, 1e-2), "widths of what is believed of a drift [speeds of a fall over a second]"
     )
     missing_frame: float = rule(
         0.02, "part of the contacts in which a frame is missing without a word [-]"
@@ -240,9 +234,8 @@ class ReductionRules:
         "a metre's tenth, a usual picture",
     )  # fmt: skip
     drift_time: float = rule(
-        1.0, "time over which the whole drift of a scale is possible [s]",
-        "a usual clip",
-    )  # fmt: skip
+        1.0, "time over which the whole drift of a scale is possible [s]", "a usual clip"
+    )
     resolved: int = rule(
         4, "samples within a contact from which its two ends are told apart [-]",
         "a curve and one that can contradict it",
@@ -275,9 +268,8 @@ class ReductionRules:
         0.2, "part of the frames that do so before they count as repeated [-]"
     )
     edge_settled: float = rule(
-        1e-4, "move at which it ends [pixel]",
-        "a tenth of the floor of a position",
-    )  # fmt: skip
+        1e-4, "move at which it ends [pixel]", "a tenth of the floor of a position"
+    )
     edge_last: float = rule(0.02, "move of the last round that is still a fit [pixel]")
     cap: float = rule(
         0.75, "part of the half-width of a rod from which the cap is read [-]",
@@ -302,8 +294,7 @@ class ReductionRules:
         0.15, "time next to the contact in which drag and lift count as even [s]"
     )
     fewest: int = rule(
-        6,
-        "samples from which a piece is judged by itself, or a contact by those beside it [-]",
+        6, "samples from which a piece is judged by itself, or a contact by those beside it [-]",
         "a parabola and three that can contradict it",
     )  # fmt: skip
     collinear: float = rule(
@@ -318,12 +309,10 @@ class ReductionRules:
         0.75, "larger of two fits at the bottom of a crater, in half-widths [-]"
     )
     bottom_small: float = rule(
-        0.5, "the smaller [-]",
-        "their difference tells the error of the form",
-    )  # fmt: skip
+        0.5, "the smaller [-]", "their difference tells the error of the form"
+    )
     foreign: float = rule(
-        6.0,
-        "robust standard deviations of what belongs to something else [-]",
+        6.0, "robust standard deviations of what belongs to something else [-]",
         "one in 10^9 by chance",
     )  # fmt: skip
     clearance: float = rule(
@@ -332,9 +321,8 @@ class ReductionRules:
     )  # fmt: skip
     level_points: float = rule(0.05, "part of the points that is left to level on [-]")
     lag_pairs: int = rule(
-        30, "pairs of points that a lag of the autocovariance needs [-]",
-        "tell it to a fifth",
-    )  # fmt: skip
+        30, "pairs of points that a lag of the autocovariance needs [-]", "tell it to a fifth"
+    )
     wall: tuple[float, float] = rule(
         (0.08, 0.45), "depths, in the whole, between which a wall is followed to the surface [-]"
     )
@@ -363,14 +351,10 @@ class ReductionRules:
         0.1, "part of the peak below it within which a top is a parabola [-]",
         "a half-sine's next term is 1 % of that",
     )  # fmt: skip
-    same_time: float = rule(
-        1.05, "a flight in the one before it that is alike [-]",
-        "bounces fade",
-    )  # fmt: skip
+    same_time: float = rule(1.05, "a flight in the one before it that is alike [-]", "bounces fade")
     same_height: float = rule(
-        0.1, "difference of peaks, in the largest, that are alike [-]",
-        "bounces fade",
-    )  # fmt: skip
+        0.1, "difference of peaks, in the largest, that are alike [-]", "bounces fade"
+    )
     elastic_parts: tuple[float, ...] = rule(
         (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06),
         "parts of the largest stress up to which the modulus may be read [-]",
@@ -397,9 +381,8 @@ class ReductionRules:
         "rates of 29.97 and 30",
     )  # fmt: skip
     position_floor: float = rule(
-        1e-3, "error of a position at least [pixel]",
-        "none in a picture is believed better",
-    )  # fmt: skip
+        1e-3, "error of a position at least [pixel]", "none in a picture is believed better"
+    )
     position_trend: float = rule(
         5e-3, "move from one end of a flight to the other [pixel]",
         "uneven light, and a blur that is not the same everywhere",
@@ -408,10 +391,7 @@ class ReductionRules:
         3.5, "blurs above the flat within which a rod's reflection moves its tip [-]",
         "rendered clips",
     )  # fmt: skip
-    mirror_move: float = rule(
-        0.1, "by how much it does [pixel]",
-        "rendered clips",
-    )  # fmt: skip
+    mirror_move: float = rule(0.1, "by how much it does [pixel]", "rendered clips")
     shape_frames: int = rule(15, "frames from which the shape of a tip is read [-]")
     mirror_least: float = rule(
         1.0, "blurs above the flat from which on a tip is told from its reflection [-]"

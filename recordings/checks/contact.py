@@ -73,8 +73,7 @@ def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, Tr
     """Energy that the contact point brings, v^2 / 2B, and what (1 - e^2) of it loses [J]."""
     mu = view.measured("friction_impulse_ratio")
     touch = view.touch
-    v = abs(touch.tip[1])
-    brought = 0.5 * touch.impulse(0.0, value_of(mu, 0.0))[1] * v
+    brought = 0.5 * touch.impulse(0.0, value_of(mu, 0.0))[1] * abs(touch.tip[1])
     relative = max(
         math.hypot(2.0 * view.speed.relative, view.striker.mass_kg.relative), RULES.rounding
     )
@@ -224,5 +223,4 @@ def _duration(view: TrialView) -> tuple[float | None, str]:
     pressure = _pressure(view)
     if pressure is None:
         return None, ""
-    mass = 1.0 / view.touch.along
-    return limits.plastic_duration(view.striker, mass, pressure.value), "expected"
+    return limits.plastic_duration(view.striker, 1.0 / view.touch.along, pressure.value), "expected"

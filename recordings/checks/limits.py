@@ -82,8 +82,7 @@ def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
         return None
     if target.strength and striker.strength and striker.strength.value < target.strength.value:
         return None
-    std = found.std or RULES.unstated_strength * found.value
-    return Quantity(value=found.value, std=std)
+    return Quantity(value=found.value, std=found.std or RULES.unstated_strength * found.value)
 
 
 def clearly_softer(target: TargetTable, striker: StrikerTable) -> bool:

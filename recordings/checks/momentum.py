@@ -60,13 +60,10 @@ class MomentumTrials:
         """Return the motion before, speed and angle off by that many standard deviations."""
         stretch = 1.0 + speed * self.speed[:, 1] / self.speed[:, 0]
         return touch(
-            self.striker,
-            angle=self.angle[:, 0] + angle * self.angle[:, 1],
-            normal=self.speed[:, 0] * stretch,
-            tangential=self.tangential * stretch,
-            spin=self.spin,
+            self.striker, angle=self.angle[:, 0] + angle * self.angle[:, 1],
+            normal=self.speed[:, 0] * stretch, tangential=self.tangential * stretch, spin=self.spin,
             second=self.second,
-        )
+        )  # fmt: skip
 
     def only(self, rows: Indices) -> MomentumTrials:
         """Return some of the trials, by number or by a mask."""

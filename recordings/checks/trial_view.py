@@ -92,13 +92,10 @@ class TrialView:
         """Return the same with the axis at another angle [rad]."""
         approach = self.found.approach
         return rigid.touch(
-            self.striker,
-            angle=angle,
-            normal=self.speed.value,
-            tangential=float(approach.tangential[self.i]),
-            spin=float(approach.spin[self.i]),
+            self.striker, angle=angle, normal=self.speed.value,
+            tangential=float(approach.tangential[self.i]), spin=float(approach.spin[self.i]),
             second=self.second,
-        )
+        )  # fmt: skip
 
     def measured(self, name: str) -> TrialReading | None:
         """Return an observable and its standard deviation, `None` where not measured."""

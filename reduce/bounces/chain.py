@@ -126,10 +126,7 @@ def _course(
 
 
 def chain_of(times: Array) -> Chain | None:
-    """Return the longest run of bounces in (n,) increasing instants [s], None if there is none.
-
-    The first 80 are looked at.
-    """
+    """Return the longest run of bounces in the first 80 of rising instants (n,) [s], or None."""
     used = np.asarray(times[:_INSTANTS_TRIED], dtype=np.float64)
     if used.size < 3:
         return None

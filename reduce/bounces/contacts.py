@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,21 +20,81 @@ from ...core.errors import InputError
 from ..gates import Refused, is_restitution
 from ..measured import Measured, propagate
 from ..rules import RULES
-from .bounce import Bounce, Bounced
 from .fall import Ball
 from .flights import Piece
 from .joint import SHARED, Before, JointSolution, fit_together
-from .scale import check_scale, floor_drift, frames_lost, scale_of
+from .scale import Scale, check_scale, floor_drift, frames_lost, scale_of
 from .sides import Sides, joined, known_before, sides_of, true_contacts, usual_spread
-from .touch import (
-    common_durations,
-    likely_durations,
-    samples_of,
-    speeds,
-    touch_of,
-)
+from .touch import common_durations, likely_durations, samples_of, speeds, touch_of
 from .track import Track, on_the_body, turning_points
 from .view import Stage, View
+
+
+@dataclass(frozen=True)
+class Bounce:
+    """One contact: velocities just before and after, in the track's unit of length per second."""
+
+    time: Measured
+    approach: Measured
+    """Downward speed of the point at the contact."""
+    rebound: Measured
+    restitution: Measured
+    height: Measured
+    """At which the flights meet, above the stage's floor."""
+    turning: int
+    """Index of the lowest sample."""
+    before: Piece
+    after: Piece
+
+    @property
+    def near(self) -> tuple[int, int]:
+        """Last sample of the flight before, and first one of the flight after the contact."""
+        before, after = self.before.index, self.after.index
+        return int(before[before < self.turning][-1]), int(after[after > self.turning][0])
+
+
+@dataclass(frozen=True)
+class Bounced:
+    """The contacts of a track in the order of time, and what its flights share.
+
+    Ranges and the likeliest shared unknowns; the acceleration at rest that the track itself shows,
+    nan if it shows none [unit/s²]; the size of the unit.
+    """
+
+    bounces: tuple[Bounce, ...]
+    stage: Stage
+    view: View
+    fall: Measured
+    scale: Scale
+    notes: tuple[str, ...]
+
+    def heights(self, piece: Piece, time: Array) -> Array:
+        """Return the heights of a flight as the camera sees them, (n,) [unit]."""
+        return self.stage.seen(self.view, piece.launch, piece.reference, time)
+
+    def row(self, k: int) -> dict[str, Measured]:
+        """Return the columns of trials.csv that contact `k` tells: ratios alone without a scale."""
+        bounce, row = self.bounces[k], {"restitution": self.bounces[k].restitution}
+        if self.scale.known:
+            row["impact_speed_m_s"] = bounce.approach.times(self.scale.metres)
+            row["rebound_speed_m_s"] = bounce.rebound.times(self.scale.metres)
+        return row
+
+    def part(self, k: int) -> slice:
+        """Return the samples from the contact before `k` to the one after it."""
+        low = self.bounces[k - 1].turning if k > 0 else 0
+        return slice(low, self.bounces[k + 1].turning if k + 1 < len(self.bounces) else None)
+
+    def trace(self, k: int, time: Array, height: Array) -> dict[str, Array]:
+        """Return time [s] and height [m] of these samples from contact `k`; {} without a scale."""
+        if not self.scale.known:
+            return {}
+        bounce, part = self.bounces[k], self.part(k)
+        touch = self.stage.floor + bounce.height.value
+        return {
+            "time_s": time[part] - bounce.time.value,
+            "tip_height_m": (height[part] - touch) * self.scale.metres.value,
+        }
 
 
 def told_bounces(
@@ -69,9 +129,8 @@ def _believed(found: Bounced, source: str) -> Bounced:
             f"no restitution is known: {said}", source=source,
             allowed="flights before and after a contact that tell one between 0 and 1",
         )  # fmt: skip
-    return replace(
-        found, bounces=kept, notes=(*found.notes, f"left out, no restitution is known: {said}")
-    )
+    notes = (*found.notes, f"left out, no restitution is known: {said}")
+    return replace(found, bounces=kept, notes=notes)
 
 
 def find_bounces(

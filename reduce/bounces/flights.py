@@ -94,8 +94,7 @@ def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: 
         predicted = float(fit.regression.prediction_std(design).mean())
         if abs(off) < RULES.no_chance * np.hypot(fit.sigma / np.sqrt(size), predicted):
             break
-        used = rest[fit.regression.used]
-        piece = Piece(used, fit.reference, fit.launch, fit.regression.sigma)
+        piece = Piece(rest[fit.regression.used], fit.reference, fit.launch, fit.regression.sigma)
     return piece
 
 
@@ -132,8 +131,7 @@ def _clean_starts(track: Track, order: Indices, size: int) -> list[int]:
         spreads.append(np.inf if upward else fit.sigma)
         offsets.append(offset)
         offset += max(1, offset // 2)
-    best = min(spreads, default=np.inf)
-    limit = 1.5 * max(best, track.noise)
+    limit = 1.5 * max(min(spreads, default=np.inf), track.noise)
     clean = [o for o, s in zip(offsets, spreads, strict=True) if s <= limit]
     clean = clean or [0]
     return sorted({clean[0], clean[len(clean) // 2], clean[-1]})
@@ -157,7 +155,7 @@ class _Fit:
 
     def heights(self, time: Array) -> Array:
         if self.view is None:
-            return self.regression.predict(_powers(time - self.reference))
+            return np.asarray(_powers(time - self.reference) @ self.regression.coefficients)
         return self.stage.seen(self.view, self.launch, self.reference, time)
 
     def deviations(self, track: Track, index: Indices) -> Array:
@@ -174,8 +172,7 @@ class _Fit:
     def speed_error(self, contact: float, time: Array) -> float:
         """Return the error of the speed at a contact by a flight seen at some times [unit/s]."""
         late = contact - self.reference
-        parabola = self.view is None
-        row = np.array([0.0, 1.0, 2.0 * late] if parabola else [0.0, 1.0])
+        row = np.array([0.0, 1.0, 2.0 * late] if self.view is None else [0.0, 1.0])
         fall = 2.0 * self.regression.coefficients[2] if self.view is None else self.view.fall
         bridged = RULES.uneven_fall * abs(fall) * float(np.abs(time - contact).min())
         variance = float(row @ self.regression.covariance @ row)
@@ -204,9 +201,8 @@ def _fitted(track: Track, index: Indices, stage: Stage, view: View | None) -> _F
             fit = robust_regression(design, left, floor=tiny)
             launch = Launch(*(float(v) for v in np.add(launch, fit.coefficients)))
     # a flight that has taken in what is none would take in more
-    return _Fit(
-        stage, view, reference, launch, fit, min(fit.sigma, RULES.flight_noise * track.noise)
-    )
+    sigma = min(fit.sigma, RULES.flight_noise * track.noise)
+    return _Fit(stage, view, reference, launch, fit, sigma)
 
 
 def own_fall(track: Track, piece: Piece) -> Measured:

@@ -82,8 +82,8 @@ def fit_together(
     belief /= belief.sum()
     solutions = [JointSolution(f[0], f[1], float(w)) for f, w in zip(found, belief, strict=True)]
     solutions.sort(key=lambda s: -s.weight)
-    launches = [solutions[0].launch(k) for k in range(len(pieces))]
-    return [replace(p, launch=q) for p, q in zip(pieces, launches, strict=True)], solutions
+    likeliest = solutions[0]
+    return [replace(p, launch=likeliest.launch(k)) for k, p in enumerate(pieces)], solutions
 
 
 def _settled(
@@ -93,7 +93,6 @@ def _settled(
     mean = np.array([before.fall.value, before.drag.value, 0.0, 0.0, 0.0])
     bends, grows = width * before.bends, width * before.grows
     std = np.array([before.fall.std, before.drag.std, bends, bends, grows])
-    x, moved = x.copy(), np.inf
     for _ in range(15):
         design, left = _system(track, pieces, stage, x)
         known = np.zeros((SHARED, x.size))
@@ -105,9 +104,8 @@ def _settled(
         inverse = np.linalg.pinv(normal, hermitian=True)
         step = inverse @ ((design / size).T @ left)
         misfit = float(left @ left)
-        moved = float(np.abs(step).max())
         x = x + step / size
-        if moved < 1e-3:
+        if np.abs(step).max() < 1e-3:
             break
     _, log_size = np.linalg.slogdet(normal)
     spread = float(log_size + 2.0 * np.log(size).sum() + 2.0 * np.log(std).sum())
@@ -138,9 +136,8 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     kept = []
     for k, piece in enumerate(pieces):
         launch = Launch(*x[SHARED + 2 * k : SHARED + 2 * k + 2])
-        left = track.height[piece.index] - stage.seen(
-            view, launch, piece.reference, track.time[piece.index]
-        )
+        seen = stage.seen(view, launch, piece.reference, track.time[piece.index])
+        left = track.height[piece.index] - seen
         usual = max(robust_std(left, lost=2), track.floor, 1e-9 * stage.reach)
         good = np.abs(left - np.median(left)) <= RULES.no_chance * usual
         good &= _untrimmed(left / usual)
@@ -152,9 +149,8 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     pooled = float(np.median([s / f for s, f in zip(squares, freedom, strict=True)]))
     result = []
     for (piece, launch, left, index), s, f in zip(kept, squares, freedom, strict=True):
-        variance = (
-            (s + RULES.pooled * pooled) / (f + RULES.pooled) * long_run_factor(left, lost=2.5)
-        )
+        together = long_run_factor(left, lost=2.5)
+        variance = (s + RULES.pooled * pooled) / (f + RULES.pooled) * together
         sigma = max(float(np.sqrt(variance)), track.floor, 1e-9 * stage.reach)
         result.append(replace(piece, index=index, launch=launch, sigma=sigma))
     return result

@@ -66,9 +66,8 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
         f"{100.0 * off:+.2g} %: check unit, rate, plane of the scale; the error of the speeds "
         "holds both"
     )
-    return Scale(
-        Measured(middle, math.hypot(std, both)), "what is stated, against gravity", (note,), off
-    )
+    metres = Measured(middle, math.hypot(std, both))
+    return Scale(metres, "what is stated, against gravity", (note,), off)
 
 
 def check_scale(scale: Scale, *, source: str) -> None:
@@ -135,8 +134,7 @@ def _drifts(
     height = np.array([h.value for _, h in contacts])
     error = np.array([h.std for _, h in contacts])
     late = time - time.mean()
-    level = float(np.average(height, weights=error**-2.0))
-    rest = height - level
+    rest = height - np.average(height, weights=error**-2.0)
     found = []
     for width in RULES.drift_widths:
         std = width * abs(fall)

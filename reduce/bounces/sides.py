@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -189,10 +190,7 @@ def joined(sides: Sides) -> tuple[list[Piece], list[int | None]]:
             common = np.intersect1d(other.index, piece.index).size
             if 2 * common >= min(other.index.size, piece.index.size):
                 longer = max(other, piece, key=lambda p: p.index.size)
-                pieces[earlier] = Piece(
-                    np.union1d(other.index, piece.index), longer.reference, longer.launch,
-                    longer.sigma,
-                )  # fmt: skip
+                pieces[earlier] = replace(longer, index=np.union1d(other.index, piece.index))
                 places.append(earlier)
                 continue
         places.append(len(pieces))

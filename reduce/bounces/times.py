@@ -66,7 +66,6 @@ def reduce_bounce_times(
     """Return the bounces behind a list of instants of contact.
 
     - `times`: (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
-    - `options`: what is known of the ball.
     - `std`: (n,) standard deviations of the times [s]; None takes them from the scatter of the
       intervals about a smooth course, which is part of them in any case.
 
@@ -132,25 +131,20 @@ def _bounces(
             f"{options.contact_time_s:g} s, and an interval of {gaps.min():.3g} s",
             source=source, key="contact_time_s", allowed="less than every interval",
         )  # fmt: skip
-    first = kept[0]
-    if options.release_height_m is not None and first == 0 and single[0]:
+    if options.release_height_m is not None and kept[0] == 0 and single[0]:
         height = Measured(options.release_height_m, options.release_height_m_std)
         vacuum = math.sqrt(2.0 * options.gravity_m_s2 * height.value)
         speed = options.fall_of(vacuum).speed(height.value)
         approach = Measured(speed, 0.5 * speed * height.std / height.value)
         after = options.fall_of(0.5 * options.gravity_m_s2 * flights[0])
-        rebound = Measured(
-            after.launch(flights[0]),
-            0.5 * after.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
-        )
-        found.append(
-            BouncedTimes(1, float(times[first]), approach, rebound, rebound.over(approach))
-        )
-    for k in range(1, len(kept) - 1):
-        if single[k - 1] and single[k]:
-            found.append(
-                _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
-            )
+        error = 0.5 * after.gravity * math.hypot(spread[0], spread[kept[1]])
+        rebound = Measured(after.launch(flights[0]), error)
+        found.append(BouncedTimes(1, float(times[0]), approach, rebound, rebound.over(approach)))
+    found += [
+        _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
+        for k in range(1, len(kept) - 1)
+        if single[k - 1] and single[k]
+    ]
     return tuple(found)
 
 
@@ -195,9 +189,8 @@ def _between(
     sigma = spread[list(three)]
     half = 0.5 * down.gravity
     return BouncedTimes(
-        three[1] + 1,
-        float(times[three[1]]),
+        three[1] + 1, float(times[three[1]]),
         Measured(approach, half * math.hypot(sigma[0], sigma[1])),
         Measured(rebound, half * math.hypot(sigma[1], sigma[2])),
         Measured(ratio, ratio * float(np.linalg.norm(part * sigma))),
-    )
+    )  # fmt: skip

@@ -83,8 +83,7 @@ def samples_of(
     shows is left out beyond each end, in which the force is too small to show and yet moves the
     speed.
     """
-    lowest = float(track.time[turning])
-    runs = _held(track, stage, view, flights, lowest)
+    runs = _held(track, stage, view, flights, float(track.time[turning]))
     ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     lasts = _unseen(likely)

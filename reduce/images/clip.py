@@ -10,16 +10,17 @@ from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core.arrays import Array, Integers
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, optional, reading
 from ..rules import RULES
 from ..shared.media import container_of
 from . import photron
 from .picture_file import (
     DOWN,
     PICTURES,
+    Crop,
+    Frame,
     cropped,
     grey_picture,
     natural_order,
@@ -29,8 +30,6 @@ from .picture_file import (
 
 # limit: memory that a clip may take [bytes]: memory of a small machine
 _CLIP_BYTES = 3_000_000_000
-
-Frame = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -51,14 +50,9 @@ class Clip:
 
 
 def read_clip(
-    path: Path,
-    *,
-    channel: str = "grey",
-    down: str = "down",
-    first: int = 0,
-    last: int | None = None,
-    crop: tuple[int, int, int, int] | None = None,
-) -> Clip:
+    path: Path, *, channel: str = "grey", down: str = "down", first: int = 0,
+    last: int | None = None, crop: Crop | None = None,
+) -> Clip:  # fmt: skip
     """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
 
     Pictures are taken in the natural order of their names. `channel` is one of `CHANNELS`, `down`,
@@ -69,9 +63,8 @@ def read_clip(
     """
     if not path.exists():
         raise InputError(
-            "no such file or folder", source=str(path),
-            allowed="a video or a folder of pictures",
-        )  # fmt: skip
+            "no such file or folder", source=str(path), allowed="a video or a folder of pictures"
+        )
     if path.is_dir():
         reader = _pictures(path, channel)
     elif path.suffix.lower() in (".tif", ".tiff"):
@@ -139,17 +132,13 @@ def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
         for frame in container.decode(video=0):
             stamp = np.nan if frame.pts is None else float(frame.pts * frame.time_base)
             pixels = frame.to_ndarray(format="gray" if channel == "grey" else "rgb24")
-            turned = np.rot90(
-                one_channel(pixels, channel), int(getattr(frame, "rotation", 0)) // 90
-            )
-            yield stamp, turned
+            turns = int(getattr(frame, "rotation", 0)) // 90
+            yield stamp, np.rot90(one_channel(pixels, channel), turns)
 
 
 def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
-    names = sorted(
-        (p for p in path.iterdir() if p.suffix.lower() in PICTURES),
-        key=lambda p: natural_order(p.name),
-    )
+    found = [p for p in path.iterdir() if p.suffix.lower() in PICTURES]
+    names = sorted(found, key=lambda p: natural_order(p.name))
     if not names:
         raise InputError("no pictures in it", source=str(path), allowed=" ".join(PICTURES))
     for name in names:
@@ -157,28 +146,18 @@ def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
 
 
 def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
-    try:
-        import tifffile
-    except ImportError:
-        raise missing_extra("reading pictures", "video") from None
+    tifffile = optional("tifffile", "reading pictures", "video")
     # its remarks on damaged headers go to the terminal; the one line below says what matters
     logging.getLogger("tifffile").setLevel(logging.CRITICAL)
-    try:
-        with tifffile.TiffFile(path) as pages:
-            for page in pages.pages:
-                if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
-                    raise InputError(
-                        f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
-                        allowed=f"pages up to {_CLIP_BYTES // 10**9} GB",
-                    )  # fmt: skip
-                yield np.nan, grey_picture(page.asarray(), channel, str(path))
-    except InputError:
-        raise
-    except Exception as error:  # every codec raises its own kind
-        raise InputError(
-            f"cannot be read as a TIFF ({first_line(error)})", source=str(path),
-            allowed="a TIFF of many pages, 8 or 16 bits a pixel",
-        ) from None  # fmt: skip
+    allowed = "a TIFF of many pages, 8 or 16 bits a pixel"
+    with reading(path, allowed, "cannot be read as a TIFF"), tifffile.TiffFile(path) as pages:
+        for page in pages.pages:
+            if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
+                raise InputError(
+                    f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
+                    allowed=f"pages up to {_CLIP_BYTES // 10**9} GB",
+                )  # fmt: skip
+            yield np.nan, grey_picture(page.asarray(), channel, str(path))
 
 
 def _timing(stamps: Array) -> tuple[float, int]:

@@ -75,13 +75,9 @@ class BallEdge:
 
 
 def fit_rod(
-    frame: Array,
-    shape: RodShape,
-    pose: tuple[float, float, float],
-    *,
-    levels: tuple[float, float],
+    frame: Array, shape: RodShape, pose: tuple[float, float, float], *, levels: tuple[float, float],
     free: str = "pose",
-) -> RodPose | None:
+) -> RodPose | None:  # fmt: skip
     """Fit pose, or pose and shape, to the grey values around the tip.
 
     - `frame`: (rows, columns), grey values, the rod bright.
@@ -146,18 +142,11 @@ def fit_ball(
 
 
 def _settle(
-    picture: Picture,
-    values: Array,
-    start: Array,
-    *,
-    free: tuple[int, ...],
-    limits: Array,
-    low: Array,
-    high: Array,
-) -> Array | None:
+    picture: Picture, values: Array, start: Array, *, free: tuple[int, ...], limits: Array,
+    low: Array, high: Array,
+) -> Array | None:  # fmt: skip
     """Weighted Gauss-Newton with Huber weights; the parameters (p,), or None."""
     p, moved = start.copy(), list(free)
-    move = np.full(len(moved), np.inf)
     for _ in range(_EDGE_ROUNDS):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]
@@ -167,9 +156,8 @@ def _settle(
         spread = max(robust_std(residual), 0.3)
         weight = np.minimum(1.0, RULES.doubtful * spread / np.maximum(np.abs(residual), 1e-12))
         active = jacobian[moved][:, zone]
-        normal = (active * weight) @ active.T
         try:
-            move = np.linalg.inv(normal) @ (active @ (weight * residual))
+            move = np.linalg.inv((active * weight) @ active.T) @ (active @ (weight * residual))
         except np.linalg.LinAlgError:
             return None
         if not np.all(np.isfinite(move)):

@@ -13,8 +13,9 @@ from xml.etree import ElementTree
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError
+from ...core.errors import InputError, reading
 from ...core.inputs.input_file import read_bytes
+from .picture_file import Frame
 
 # limit: largest header of a clip [bytes]: a thousand times the usual one
 _HEADER_BYTES = 10_000_000
@@ -33,7 +34,7 @@ _HEADERS = {
 """What is needed, by its name in a .cih and its place in a .cihx."""
 
 
-def photron_frames(path: Path) -> Iterator[tuple[float, npt.NDArray[np.uint8]]]:
+def photron_frames(path: Path) -> Iterator[tuple[float, Frame]]:
     """Yield time [s] and grey values 0-255 (rows, columns) of each frame.
 
     Refuses what has no header beside the frames, or one that does not say what is needed, colours,
@@ -63,7 +64,7 @@ def photron_frames(path: Path) -> Iterator[tuple[float, npt.NDArray[np.uint8]]]:
         yield k / rate, grey.reshape(rows, columns)
 
 
-def _values(frame: npt.NDArray[np.uint8], bits: int) -> npt.NDArray[np.uint16]:
+def _values(frame: Frame, bits: int) -> npt.NDArray[np.uint16]:
     """Unpack a frame: two values of 12 bits lie in three bytes, others as they are."""
     if bits == 8:
         return frame.astype(np.uint16)
@@ -91,14 +92,10 @@ def _header(path: Path) -> dict[str, str]:
 
 def _of_xml(text: str, source: Path) -> dict[str, str]:
     found = re.search(r"<cih>.*</cih>", text, re.DOTALL)
-    try:
+    with reading(source, "a header of Photron", raised=(ElementTree.ParseError, ValueError)):
         if found is None or "<!ENTITY" in text:
             raise ValueError("no table cih")
         root = ElementTree.fromstring(found.group())
-    except (ElementTree.ParseError, ValueError) as error:
-        raise InputError(
-            f"cannot be read ({error})", source=str(source), allowed="a header of Photron"
-        ) from None
     return {name: root.findtext(place, "").strip() for name, (_, place) in _HEADERS.items()}
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, optional, reading
 from ...core.inputs.input_file import checked_file
 
 # limit: largest picture [bytes]: memory of a small machine
@@ -17,39 +17,35 @@ _PICTURE_BYTES = 1_000_000_000
 
 CHANNELS = ("grey", "red", "green", "blue")
 
+Frame = npt.NDArray[np.uint8]
+Crop = tuple[int, int, int, int]
+"""Rows from and to, columns from and to, the ends excluded."""
+
 DOWN = {"down": 0, "left": 1, "up": 2, "right": 3}
 """Where gravity points in the picture, and the quarter turns counter-clockwise that undo it."""
 _CROP = re.compile(r"(\d+):(\d+),(\d+):(\d+)")
 PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
 
 
-def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
+def read_picture(path: Path, *, channel: str = "grey") -> Frame:
     """Return one picture as grey values 0-255, (rows, columns); refuse what cannot be read."""
-    try:
-        from skimage.io import imread
-    except ImportError:
-        raise missing_extra("reading pictures", "video") from None
+    skimage_io = optional("skimage.io", "reading pictures", "video")
     checked_file(path, most=_PICTURE_BYTES, allowed="a picture")
     if path.suffix.lower() not in PICTURES:
         raise InputError(
             "cannot be read as a picture", source=str(path), allowed=" ".join(PICTURES)
         )
-    try:
-        pixels = np.asarray(imread(path))
-    except Exception as error:  # every plug-in of the picture reader raises its own kind
-        raise InputError(
-            f"cannot be read as a picture ({first_line(error)})", source=str(path),
-            allowed=" ".join(PICTURES),
-        ) from None  # fmt: skip
+    with reading(path, " ".join(PICTURES), "cannot be read as a picture"):
+        pixels = np.asarray(skimage_io.imread(path))
     return grey_picture(pixels, channel, str(path))
 
 
-def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> npt.NDArray[np.uint8]:
+def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> Frame:
     """Return decoded pixels of 8 or 16 bits as grey values 0-255; refuse others."""
     return one_channel(_flat(_eight_bits(pixels, source), source), channel)
 
 
-def _eight_bits(pixels: npt.NDArray[Any], source: str) -> npt.NDArray[np.uint8]:
+def _eight_bits(pixels: npt.NDArray[Any], source: str) -> Frame:
     if pixels.dtype == np.uint16:
         return (pixels // 257).astype(np.uint8)
     if pixels.dtype == np.bool_:
@@ -61,7 +57,7 @@ def _eight_bits(pixels: npt.NDArray[Any], source: str) -> npt.NDArray[np.uint8]:
     return pixels
 
 
-def _flat(pixels: npt.NDArray[np.uint8], source: str) -> npt.NDArray[np.uint8]:
+def _flat(pixels: Frame, source: str) -> Frame:
     """Take off a plane of transparency, and a third axis that holds one plane."""
     if pixels.ndim == 3 and pixels.shape[2] in (2, 4):
         pixels = pixels[:, :, :-1]
@@ -73,7 +69,7 @@ def _flat(pixels: npt.NDArray[np.uint8], source: str) -> npt.NDArray[np.uint8]:
     return pixels
 
 
-def one_channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.uint8]:
+def one_channel(pixels: Frame, channel: str) -> Frame:
     """Return one of `CHANNELS` of a picture in colours, (rows, columns)."""
     if pixels.ndim == 2:
         return pixels
@@ -82,7 +78,7 @@ def one_channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.u
     return pixels[:, :, CHANNELS.index(channel) - 1]
 
 
-def crop_window(text: str) -> tuple[int, int, int, int] | None:
+def crop_window(text: str) -> Crop | None:
     """Return the numbers of TOP:BOTTOM,LEFT:RIGHT, None of an empty text; else ValueError."""
     found = _CROP.fullmatch(text)
     if found is None:
@@ -93,9 +89,7 @@ def crop_window(text: str) -> tuple[int, int, int, int] | None:
     return top, bottom, left, right
 
 
-def cropped(
-    frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int] | None
-) -> npt.NDArray[np.uint8]:
+def cropped(frame: Frame, crop: Crop | None) -> Frame:
     """Return the rows and columns of a crop, its ends excluded; refuse one beyond the frame."""
     if crop is None:
         return frame

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -79,16 +80,9 @@ class Body:
 
 
 def make_body(
-    poses: Poses,
-    markers: Markers,
-    *,
-    shape: str,
-    tip_radius: float,
-    length: float,
-    radius: float | None,
-    file: Path | None,
-    axis: tuple[str, str] | None,
-) -> tuple[Body, tuple[str, ...]]:
+    poses: Poses, markers: Markers, *, shape: str, tip_radius: float, length: float,
+    radius: float | None, file: Path | None, axis: Sequence[str],
+) -> tuple[Body, tuple[str, ...]]:  # fmt: skip
     """Return the body and remarks about it; lengths [m].
 
     Without a `BodyFile` spin shows the centre of mass, and `axis` names two markers on a line along
@@ -99,7 +93,7 @@ def make_body(
     remarks: tuple[str, ...] = ("centre of mass found from the flights (no body file)",)
     if file is not None:
         given, way, remarks = _from_file(file, poses, markers)
-    if axis is not None:
+    if axis:
         one, two = (markers.names.index(markers.only((n,)).names[0]) for n in axis)
         way = poses.shape[one] - poses.shape[two]
         way = way / np.linalg.norm(way)

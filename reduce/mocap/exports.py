@@ -10,7 +10,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,10 +29,7 @@ _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": 
 
 
 class Export(NamedTuple):
-    """What an export holds: (n,) times [s], m names, positions (n, m, 3) in `unit`.
-
-    NaN where a marker was not seen.
-    """
+    """Times (n,) [s], m names, positions (n, m, 3) in `unit`, NaN where a marker was not seen."""
 
     time: Array
     names: tuple[str, ...]
@@ -40,10 +38,7 @@ class Export(NamedTuple):
 
 
 def read_export(path: Path) -> Export | None:
-    """Return what a tracker's export holds, None for any other file.
-
-    Refuse one without positions.
-    """
+    """Return a tracker's export, None for any other file; refuse one without positions."""
     with path.open("rb") as stream:
         first = stream.read(4096).decode("utf-8-sig", errors="replace")
     known = {"Format Version": _motive, "NO_OF_FRAMES": _qualisys, "PathFileType": _opensim}
@@ -90,7 +85,8 @@ def _vicon(rows: list[list[str]], source: str) -> Export:
         name: [k, k + 1, k + 2] for k, name in enumerate(titles) if name and not name.isdigit()
     }
     unit = next((u for u in units if u in LENGTH), "mm")
-    return _export(_block(rows[top + 5 :]), found, 0, rate, unit, source)
+    block = takewhile(any, rows[top + 5 :])  # up to the empty line that ends it
+    return _export(block, found, 0, rate, unit, source)
 
 
 def _qualisys(rows: list[list[str]], source: str) -> Export:
@@ -100,10 +96,8 @@ def _qualisys(rows: list[list[str]], source: str) -> Export:
     body = [row for row in rows if row and _is_number(row[0])]
     width = max((len([c for c in row if c]) for row in body), default=0)
     before = max(width - 3 * len(names), 0)  # frame and time, where they were exported
-    found = {n: [before + 3 * k + a for a in range(3)] for k, n in enumerate(names)}
-    counted = [[str(k), *row] for k, row in enumerate(body)]
-    moved = {n: [p + 1 for p in place] for n, place in found.items()}
-    return _export(counted, moved, 0, rate, "mm", source)
+    found = {n: [before + 3 * k + a for a in (1, 2, 3)] for k, n in enumerate(names)}
+    return _export([[str(k), *row] for k, row in enumerate(body)], found, 0, rate, "mm", source)
 
 
 def _opensim(rows: list[list[str]], source: str) -> Export:
@@ -114,21 +108,13 @@ def _opensim(rows: list[list[str]], source: str) -> Export:
     return _export(rows[5:], found, 1, 1.0, said.get("Units", "mm"), source)
 
 
-def _block(rows: Sequence[list[str]]) -> Iterator[list[str]]:
-    """Rows up to the empty line that ends a block."""
-    for row in rows:
-        if not any(row):
-            return
-        yield row
-
-
 def _is_number(cell: str) -> bool:
     return bool(np.isfinite(number(cell)))
 
 
 def _export(
-    rows: Sequence[list[str]] | Iterator[list[str]], found: dict[str, list[int]], clock: int,
-    rate: float, unit: str, source: str,
+    rows: Iterable[list[str]], found: dict[str, list[int]], clock: int, rate: float, unit: str,
+    source: str,
 ) -> Export:  # fmt: skip
     """Collect times (a column over a rate) and the places of every marker."""
     data = [row for row in rows if len(row) > clock and _is_number(row[clock])]

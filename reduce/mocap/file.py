@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, missing_extra, reading
 from ...core.inputs.csv_table import shown
 from ...core.processes.confined import confined
 from ..shared.units import LENGTH, metres
@@ -83,13 +83,9 @@ class Markers:
 
 
 def read_markers(
-    path: Path,
-    *,
-    unit: str | None,
-    rate: float | None,
-    select: str = "",
+    path: Path, *, unit: str | None, rate: float | None, select: str = "",
     points: Mapping[str, Sequence[float]] | None = None,
-) -> Markers:
+) -> Markers:  # fmt: skip
     """Read marker tracks from a C3D file, a tracker's export, or a table.
 
     A table has names above its numbers, a column `time_s` (or `frame`, with `rate` [1/s]), and
@@ -133,34 +129,28 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
         raise missing_extra("reading C3D files", "mocap")
     points, residuals, labels, stated, rates = confined(_c3d_content, path, source=str(path))
     labels += [f"M{k + 1}" for k in range(len(labels), points.shape[1])]
-    said = unit or (stated[0] if stated else "")
-    factor = metres(said, source=str(path), allowed=UNITS)
+    factor = metres(unit or (stated[0] if stated else ""), source=str(path), allowed=UNITS)
     hertz = rate or (rates[0] if rates else 0.0)
     if not 0.0 < hertz < math.inf:
         raise InputError(
             "the file does not say its frame rate", source=str(path), key="frame_rate_hz",
             allowed="frames per second",
         )  # fmt: skip
-    position = np.moveaxis(points, 0, 2).transpose(1, 0, 2) * factor
+    position = points.T * factor
     position[(residuals.T < 0.0)] = np.nan
-    time = np.arange(position.shape[0]) / hertz
-    return Markers(time, tuple(labels), position, str(path))
+    return Markers(np.arange(position.shape[0]) / hertz, tuple(labels), position, str(path))
 
 
 def _c3d_content(path: Path) -> tuple[Array, Array, list[str], list[str], list[float]]:
     import ezc3d
 
-    try:
+    with reading(path, "a C3D file", "cannot be read as C3D"):
         content = ezc3d.c3d(str(path))
         points = np.asarray(content["data"]["points"], dtype=np.float64)[:3]
         residuals = np.asarray(content["data"]["meta_points"]["residuals"])[0]
         labels = [str(n) for n in _parameter(content, "LABELS")][: points.shape[1]]
         stated = [str(u).strip().lower() for u in _parameter(content, "UNITS")]
         rates = [float(r) for r in _parameter(content, "RATE")]
-    except Exception as error:  # the library raises its own kinds, and KeyError where a part lacks
-        raise InputError(
-            f"cannot be read as C3D ({first_line(error)})", source=str(path), allowed="a C3D file"
-        ) from None
     return points, residuals, labels, stated, rates
 
 
@@ -170,12 +160,9 @@ def _parameter(content: Any, name: str) -> list[Any]:
 
 
 def _table(
-    path: Path,
-    unit: str | None,
-    rate: float | None,
-    select: str,
+    path: Path, unit: str | None, rate: float | None, select: str,
     points: Mapping[str, Sequence[float]],
-) -> Markers:
+) -> Markers:  # fmt: skip
     table = read_columns(path)
     if select:
         table = table.select(select)
@@ -253,10 +240,9 @@ def _poses(
 
 
 def _times(table: Columns, rate: float | None) -> Array:
-    rows = len(table.values)
     if rate is not None:
         frames = [_numbers(table, [n])[:, 0] for n in table.names if _FRAME.fullmatch(n)]
-        return np.asarray((frames[0] if frames else np.arange(rows)) / rate)
+        return np.asarray((frames[0] if frames else np.arange(len(table.values))) / rate)
     for name in table.names:
         found = _TIME.fullmatch(name)
         if found is not None:
@@ -268,10 +254,9 @@ def _times(table: Columns, rate: float | None) -> Array:
                 )  # fmt: skip
             return time * (1e-3 if found["unit"] == "ms" else 1.0)
     raise InputError(
-        f"no column of time among {', '.join(table.names[:12])}",
-        source=table.source,
+        f"no column of time among {', '.join(table.names[:12])}", source=table.source,
         allowed="time_s, or the option frame_rate_hz",
-    )
+    )  # fmt: skip
 
 
 def _groups(table: Columns) -> dict[str, dict[str, tuple[str, str | None]]]:

@@ -37,12 +37,11 @@ def reduce(path: Path, options: MocapOptions) -> Reduced:
     if options.shape == "sphere" and len(markers.names) == 1:
         return _point(path, markers, scene, options)
     poses = rigid_poses(markers)
-    ends = options.two_ends
     body, remarks = make_body(
         poses, markers, shape=options.shape, tip_radius=options.tip_radius_m or 0.0,
         length=(options.length_m or 0.0) if options.shape == "rod" else 0.0,
         radius=options.radius_m, file=Path(options.body) if options.body else None,
-        axis=(ends[0], ends[1]) if options.axis else None,
+        axis=options.two_ends,
     )  # fmt: skip
     heights = markers.position @ up
     seen = np.isfinite(heights).any(axis=1)

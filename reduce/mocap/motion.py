@@ -126,6 +126,5 @@ def first_guess(poses: Poses, span: tuple[int, int], gravity: Array) -> Motion:
     steps = Rotation.from_matrix(turned).as_rotvec() / np.diff(time)[:, None]
     tau = time - reference
     line = np.polyfit(tau, poses.origin[index] - 0.5 * gravity * tau[:, None] ** 2, 1)
-    return Motion(
-        reference, line[1], line[0], poses.turn[middle], np.median(steps, axis=0), gravity
-    )
+    spin = np.median(steps, axis=0)
+    return Motion(reference, line[1], line[0], poses.turn[middle], spin, gravity)

@@ -23,9 +23,8 @@ from ..rules import RULES
 from ..shared.regression import robust_regression
 from .checks import check_fall
 from .file import Markers
-from .reduction import MocapScene
+from .reduction import MocapScene, columns_of
 
-_NOT_COLUMNS = ("out_of_plane_ratio", "contact_height_m")
 _NAMES = (
     "angle_deg", "impact_speed_m_s", "approach_tangential_m_s", "restitution",
     "friction_impulse_ratio", "rebound_speed_m_s", "tangential_rebound_m_s", "out_of_plane_ratio",
@@ -65,7 +64,7 @@ class PointReduction:
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each bounce."""
         return tuple(
-            Trial({k: v for k, v in b.measured.items() if k not in _NOT_COLUMNS}, label=label)
+            Trial(columns_of(b.measured), label=label)
             for b, label in zip(self.bounces, labels(len(self.bounces)), strict=True)
         )
 
@@ -114,8 +113,7 @@ def _contacts(time: Array, height: Array) -> Iterator[tuple[float, tuple[Piece, 
 
     A spinning ball is lifted, otherwise before a bounce than after it: the flights share no fall.
     """
-    seen = Track(time, height)
-    chosen = on_the_body(seen)
+    chosen = on_the_body(Track(time, height))
     track = Track(time[chosen], height[chosen])
     turning = turning_points(track)
     if not turning:
@@ -154,8 +152,7 @@ def _side(
     fits = [robust_regression(design, position[index, k]) for k in range(3)]
     velocity = np.array([f.coefficients[1] for f in fits])
     covariance = np.diag([f.covariance[1, 1] for f in fits])
-    coefficients = np.array([f.coefficients for f in fits])
-    side = Side(velocity, covariance, time[index], coefficients)
+    side = Side(velocity, covariance, time[index], np.array([f.coefficients for f in fits]))
     return side, float(np.mean([f.sigma for f in fits]))
 
 

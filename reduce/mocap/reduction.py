@@ -8,7 +8,7 @@ the changes of velocity, |ΔV_x / ΔV_y| (Eq. 5.13; the printed sign holds for o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,22 +30,22 @@ from .rigid import Poses
 _UPRIGHT = math.radians(1.0)
 """Lean below which the plane of motion is that of the impulse, not that of the rod."""
 
-
 _NAMES = (
     "time_s", "angle_deg", "impact_speed_m_s", "approach_tangential_m_s", "approach_normal_m_s",
     "approach_spin_rad_s", "restitution", "friction_impulse_ratio", "rebound_spin_rad_s",
     "rebound_speed_m_s", "tangential_rebound_m_s", "tip_slip_before_m_s", "tip_slip_after_m_s",
     "out_of_plane_ratio", "spin_out_of_plane_rad_s", "spin_change_by_momentum_rad_s",
 )  # fmt: skip
-_COLUMNS = tuple(n for n in _NAMES if n in TRIAL_COLUMNS)
+
+
+def columns_of(measured: Mapping[str, Measured]) -> dict[str, Measured]:
+    """Return what of the numbers of an impact trials.csv has a column for."""
+    return {name: value for name, value in measured.items() if name in TRIAL_COLUMNS}
 
 
 @dataclass(frozen=True)
 class MocapScene:
-    """What the markers do not tell: up (3,) out of the flat in the file's axes, gravity [m/s²].
-
-    And the relative standard deviation of all lengths of the tracker.
-    """
+    """Up (3,) out of the flat in the file's axes, gravity [m/s²], relative error of all lengths."""
 
     up: Array
     gravity: float = GRAVITY
@@ -97,12 +97,10 @@ class MocapReduction:
         """Return a row of trials.csv for each impact; none for a body of no known shape."""
         if self.body.shape == "body":
             return ()
-        names = labels(len(self.hits))
-        return tuple(self._trial(h, k) for h, k in zip(self.hits, names, strict=True))
-
-    def _trial(self, hit: Hit, label: str) -> Trial:
-        row = {name: hit.measured[name] for name in _COLUMNS if name in hit.measured}
-        return Trial(row, trace=self._trace(hit), label=label)
+        return tuple(
+            Trial(columns_of(hit.measured), trace=self._trace(hit), label=label)
+            for hit, label in zip(self.hits, labels(len(self.hits)), strict=True)
+        )
 
     def _trace(self, hit: Hit) -> dict[str, Array]:
         before, after = (self.flights.spans[f] for f in hit.flights)
@@ -163,10 +161,9 @@ def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) ->
 
 def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: MocapScene) -> Hit:
     before, after = flights.motions[f], flights.motions[f + 1]
-    guess = 0.5 * (poses.time[flights.spans[f][1]] + poses.time[flights.spans[f + 1][0]])
     extent = max(poses.extent, 1e-3)
     low, high = poses.time[flights.spans[f][1]], poses.time[flights.spans[f + 1][0]]
-    time = float(np.clip(_meeting(before, after, float(guess), extent), low, high))
+    time = float(np.clip(_meeting(before, after, float(0.5 * (low + high)), extent), low, high))
     plane = _plane(before, after, time, body, scene.up)
 
     def numbers(step: Array) -> Array:
@@ -174,8 +171,7 @@ def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Mo
         when = _meeting(one, two, time, extent)
         return _numbers(one, two, float(np.clip(when, low, high)), body, scene.up, plane)
 
-    covariance = flights.part((f, f + 1))
-    found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), covariance))
+    found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), flights.part((f, f + 1))))
     if math.isinf(body.inertia_over_mass):  # not known: nothing to hold the spin against
         del found["spin_change_by_momentum_rad_s"]
     return Hit((f, f + 1), found, plane[0], gap)

@@ -66,10 +66,7 @@ def kabsch(shape: Array, points: Array) -> tuple[Array, Array]:
 
 
 def rigid_poses(markers: Markers) -> Poses:
-    """Return mean shape and poses of a body with three or more markers.
-
-    Refuses fewer, and too few frames in which three are seen.
-    """
+    """Return mean shape and poses; refuse fewer than three markers, or seen in too few frames."""
     points = markers.position
     seen: Mask = np.asarray(np.isfinite(points).all(axis=2))
     if points.shape[1] < 3:
@@ -85,9 +82,8 @@ def rigid_poses(markers: Markers) -> Poses:
             allowed="10 or more",
         )  # fmt: skip
     line = _is_line(shape)
-    origins: list[Array] = []
     turns: list[Array] = []
-    factors, misfits = [], []
+    origins, factors, misfits = [], [], []
     for k in frames:
         body, found = shape[seen[k]], points[k, seen[k]]
         origin, turn = kabsch(body, found)

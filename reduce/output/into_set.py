@@ -50,15 +50,9 @@ class Stored:
 
 
 def store(
-    reduced: Reduced,
-    folder: Path,
-    row: Row,
-    *,
-    kind: str,
-    options: Mapping[str, Any],
-    setup: SetFile | None = None,
-    strikers: Sequence[str] = (),
-) -> Stored:
+    reduced: Reduced, folder: Path, row: Row, *, kind: str, options: Mapping[str, Any],
+    setup: SetFile | None = None, strikers: Sequence[str] = (),
+) -> Stored:  # fmt: skip
     """Write a reduction into a set, new or existing, in a row with conditions that the file lacks.
 
     `kind` and `options` are kept in the record. A new set gets `setup`, or else one to fill in, of
@@ -70,20 +64,17 @@ def store(
         shape = _shape(kind, options)
         before, text = _set_before(folder, setup, shape=shape, strikers=strikers)
         striker = _striker(before, row)
-        after, curves = before, {}
-        names = []
+        after, curves = before, dict[str, Trial]()
         _check_one_approach(reduced, row)
         own = row.trial or trial_name(reduced.source, **options)
         # a reader need not label its trials: no row may take another one's place
         apart = len({trial.label for trial in reduced.trials}) == len(reduced.trials)
         for k, trial in enumerate(reduced.trials, start=1):
-            parts = (own, trial.label, "" if apart else str(k))
-            name = "-".join(filter(None, parts))
+            name = "-".join(filter(None, (own, trial.label, "" if apart else str(k))))
             if not names_a_file(name):  # a label may be the raw file's own
                 raise InputError(repr(name), key="trial", allowed=ALLOWED)
             after = _with_trial(after, name, striker, trial, row)
             curves[name] = trial
-            names.append(name)
         new = not (folder / "set.toml").exists() and setup is None
         stated = _stated_body(shape, options) if new else {}
         after = _with_flow(_with_setup(after, striker, reduced, stated), reduced)
@@ -93,9 +84,9 @@ def store(
         kept, told = _kept_flows(after, _flow_path(reduced, folder), folder)
         _write_whole(after, text, curves, folder, kept)
     record, picture = write_record(
-        reduced, folder / "reduced", own, kind=kind, options=options, trials=names
+        reduced, folder / "reduced", own, kind=kind, options=options, trials=[*curves]
     )
-    return Stored(tuple(names), record, picture, (*notes, *told), _flow_path(reduced, folder))
+    return Stored(tuple(curves), record, picture, (*notes, *told), _flow_path(reduced, folder))
 
 
 def store_each(

@@ -15,14 +15,9 @@ from ..reduced import Reduced
 
 
 def write_record(
-    reduced: Reduced,
-    folder: Path,
-    name: str,
-    *,
-    kind: str,
-    options: Mapping[str, Any],
+    reduced: Reduced, folder: Path, name: str, *, kind: str, options: Mapping[str, Any],
     trials: list[str] | None = None,
-) -> tuple[Path, Path]:
+) -> tuple[Path, Path]:  # fmt: skip
     """Write NAME-KIND.json (file, checksum, options, values, notes) and the picture; both paths."""
     record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
     content = {

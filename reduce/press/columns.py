@@ -74,12 +74,9 @@ def read_press(path: Path, options: PressOptions) -> PressRecord:
     tables = list(_tables(path, options))
     found = next((t for t in tables if _has_both(t, options)), tables[0])
     load, depth = (_column(found, *which, path, options) for which in _wanted(options))
-    columns = [
-        found.values[:, load] * found.factor(load, "force", given=options.load_unit,
-                                             key="load_unit"),
-        found.values[:, depth] * found.factor(depth, "length", given=options.depth_unit,
-                                              key="depth_unit"),
-    ]  # fmt: skip
+    newtons = found.factor(load, "force", given=options.load_unit, key="load_unit")
+    metres = found.factor(depth, "length", given=options.depth_unit, key="depth_unit")
+    columns = [found.values[:, load] * newtons, found.values[:, depth] * metres]
     clock = found.find(options.time, key="time") if options.time else _named(found, _TIMES, "time")
     rows = np.arange(float(len(found.values)))
     time = rows

@@ -70,8 +70,7 @@ def stiffness(load: Array, depth: Array, cycle: Cycle) -> Measured:
     Of P = B (h - h0)^m over the upper half (Oliver and Pharr, eq. 8; ISO 14577-1, A.4); its error
     holds the difference to the upper third's.
     """
-    found = [_slope(load, depth, cycle, low) for low in _STIFFNESS_FROM]
-    whole, upper = found
+    whole, upper = (_slope(load, depth, cycle, low) for low in _STIFFNESS_FROM)
     return whole if math.isnan(upper.value) else whole.widened(0.5 * (upper.value - whole.value))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..measured import Measured, labelled
+from ..measured import Measured, labelled, labels
 from ..pictures import drawn_if_refused
 from ..reduced import Reduced
 from .columns import read_press
@@ -24,7 +24,7 @@ def reduce(path: Path, options: PressOptions) -> Reduced:
         )  # fmt: skip
     rows = [p for p in found.presses if p.cycle.beyond and p.cycle.least < 1.0]
     rows = rows if options.cycles == "each" else [found.largest]
-    names = [""] if len(rows) == 1 else [f"press{k}" for k in range(1, len(rows) + 1)]
+    names = labels(len(rows), "press")
     values = labelled(zip(names, (p.values() for p in rows), strict=True))
     values["contact_zero_m"] = found.zero
     if found.compliance is not None:

@@ -154,8 +154,7 @@ def _press(
     load_std: float, noise: float,
 ) -> ReducedPress:  # fmt: skip
     top = slice(cycle.begin, max(cycle.turn, cycle.begin) + 1)
-    scatter = noise_of(depth)
-    under = Measured(float(depth[top].max()), scatter)
+    under = Measured(float(depth[top].max()), noise_of(depth))
     end = left_depth(load, depth, cycle, noise)
     # what the machine's error moves, it moves in proportion to the load
     machine = own.std * cycle.peak
@@ -196,9 +195,8 @@ def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured 
         found.append((best[0], sigma * math.sqrt(unit_covariance(design * weight)[0, 0])))
     (first, first_std), (second, second_std) = found
     middle = 0.5 * (first + second)
-    return Measured(
-        max(float(middle), 0.0), math.hypot(max(first_std, second_std), 0.5 * (first - second))
-    )
+    std = math.hypot(max(first_std, second_std), 0.5 * (first - second))
+    return Measured(max(float(middle), 0.0), std)
 
 
 def _told(record: PressRecord, presses: tuple[ReducedPress, ...]) -> list[str]:

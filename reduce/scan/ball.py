@@ -62,10 +62,8 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     fit, off = _sphere(x, y, z, top, limit)
     turn = (np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi)
     sector = (turn * RULES.sectors).astype(int)
-    parts = []
-    for left_out in range(RULES.sectors):
-        keep = sector % RULES.sectors != left_out
-        parts.append(1.0 / _sphere(x[keep], y[keep], z[keep], top, limit)[0][3])
+    kept = (sector % RULES.sectors != left_out for left_out in range(RULES.sectors))
+    parts = [1.0 / _sphere(x[k], y[k], z[k], top, limit)[0][3] for k in kept]
     scatter = np.sum((parts - np.mean(parts)) ** 2)
     std = float(np.sqrt((RULES.sectors - 1) / RULES.sectors * scatter))
     missing = 100.0 * float(np.mean(~np.isfinite(scan.z)))

@@ -98,8 +98,7 @@ def _as_floor(
     step = 1e-3
     around = _design(at + step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [0, 0]])) @ c
     laplacian = float(around[:4].sum() - 4.0 * around[4]) / (step * radius) ** 2
-    place = start * found.step + at * radius
-    return _Floor(float(around[4]), place, laplacian, weights)
+    return _Floor(float(around[4]), start * found.step + at * radius, laplacian, weights)
 
 
 def _disc(step: Array, radius: float) -> tuple[Indices, Array]:

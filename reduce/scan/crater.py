@@ -75,11 +75,7 @@ class Crater:
 
 
 def reduce_scan(
-    scan: Scan,
-    *,
-    level: str = "plane",
-    height_scale: Measured = UNITY,
-    blur: Measured = ZERO,
+    scan: Scan, *, level: str = "plane", height_scale: Measured = UNITY, blur: Measured = ZERO
 ) -> Crater:
     """Measure the deepest crater of a scan, or refuse one that stands out of no roughness.
 

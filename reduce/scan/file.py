@@ -16,7 +16,7 @@ from scipy.interpolate import CloughTocher2DInterpolator
 from scipy.spatial import cKDTree
 
 from ...core.arrays import Array
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, first_line, optional
 from ...core.inputs.csv_table import number, shown
 from ..shared.units import LARGEST_NUMBER, LENGTH, metres
 from ..table.cells import UNSEEN
@@ -55,12 +55,9 @@ class Scan:
 
 
 def read_scan(
-    path: Path,
-    *,
-    unit: str | None = None,
-    height_unit: str | None = None,
+    path: Path, *, unit: str | None = None, height_unit: str | None = None,
     step: float | None = None,
-) -> Scan:
+) -> Scan:  # fmt: skip
     """Read any file that SurfaceTopography knows, a mesh's points, or comma-separated numbers.
 
     Units of length along the surface and of the heights (by default the same), of `units.LENGTH`,
@@ -122,16 +119,13 @@ def _refuse_far(step: float, path: Path) -> None:
 
 def _known_format(path: Path) -> _Raw:
     """Read a file with SurfaceTopography."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            from SurfaceTopography import open_topography
-    except ImportError:
-        raise missing_extra("reading profilometer files", "surface") from None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        library = optional("SurfaceTopography", "reading profilometer files", "surface")
     try:
         with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             warnings.simplefilter("ignore")  # its readers print what they stumble over, in turn
-            channel = open_topography(str(path)).default_channel
+            channel = library.open_topography(str(path)).default_channel
             silent = channel.physical_sizes is None
             sizes = {"physical_sizes": tuple(map(float, channel.nb_grid_pts))} if silent else {}
             _check_claim(channel.nb_grid_pts, path)

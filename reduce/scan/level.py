@@ -67,8 +67,7 @@ def levelled(scan: Scan, *, level: str = "plane") -> Levelled:
     blur = max(1.0, 0.004 * max(z.shape))
     whole = filled(z)
     for _ in range(8):
-        surface = _surface(terms, z, clear, 20_000)
-        smooth = ndimage.gaussian_filter(whole - surface, blur)
+        smooth = ndimage.gaussian_filter(whole - _surface(terms, z, clear, 20_000), blur)
         found, *others = _craters_of(smooth, clear, scan)
         same = np.array_equal(found, crater)
         crater = found

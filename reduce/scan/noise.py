@@ -38,7 +38,6 @@ def variance(weights: Array, covariance: Array) -> float:
 def _correlation(field: Array, reach: Indices) -> Array:
     """Return the sums of products of points `lag` apart, lags from -reach to reach."""
     size = [int(n + r) for n, r in zip(field.shape, reach, strict=True)]
-    spectrum = np.fft.rfft2(field, size)
-    full = np.fft.irfft2(np.abs(spectrum) ** 2, size)
+    full = np.fft.irfft2(np.abs(np.fft.rfft2(field, size)) ** 2, size)
     i, j = (np.arange(-r, r + 1) for r in reach)
     return np.asarray(full[np.ix_(i, j)])

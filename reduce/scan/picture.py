@@ -55,8 +55,7 @@ def _map(axis: Any, result: Crater, made: Any) -> None:
         vmin=-limit, vmax=limit, interpolation="nearest",
     )  # fmt: skip
     x, y = (UM * h * np.arange(n) for h, n in zip(step, z.shape, strict=True))
-    crater = result.surface.crater.T.astype(float)
-    axis.contour(x, y, crater, [0.5], colors="k", linewidths=0.8)
+    axis.contour(x, y, result.surface.crater.T.astype(float), [0.5], colors="k", linewidths=0.8)
     left_out = binary_opening(~result.surface.clear, iterations=2)  # without the spikes
     axis.contour(x, y, left_out.T.astype(float), [0.5], colors="g", linewidths=0.5)
     deep = UM * result.deepest
@@ -79,9 +78,8 @@ def draw_ball(result: ScannedBall, path: Path) -> None:
     nm = 1e9
     limit = 4.0 * nm * result.rest
     points = axes[0, 0].scatter(
-        UM * result.x, UM * result.y, c=nm * result.off, s=2, cmap="RdBu_r", vmin=-limit,
-        vmax=limit,
-    )  # fmt: skip
+        UM * result.x, UM * result.y, c=nm * result.off, s=2, cmap="RdBu_r", vmin=-limit, vmax=limit
+    )
     axes[0, 0].plot(*(UM * result.top), "k+", ms=12)
     axes[0, 0].set(aspect="equal", xlabel="x [um]", ylabel="y [um]", title="above the sphere [nm]")
     made.colorbar(points, ax=axes[0, 0])

@@ -31,8 +31,7 @@ def section(found: Levelled, place: Array, direction: float, half_width: float) 
     normal = np.array([-axis[1], axis[0]])
     size = float(np.hypot(*(np.array(found.z.shape) * found.step)))
     s = np.arange(-size, size, float(found.step.min()))
-    band = _BAND * half_width
-    points = place + s[:, None, None] * axis + band[None, :, None] * normal
+    points = place + s[:, None, None] * axis + (_BAND * half_width)[None, :, None] * normal
     at = (points / found.step).transpose(2, 0, 1)
     z = ndimage.map_coordinates(filled(found.z), at, order=1, mode="constant", cval=np.nan)
     mean = z.mean(axis=1)
@@ -59,10 +58,9 @@ def section_covariance(found: Levelled, half_width: float) -> Array:
 
 def opening(line: Section, depth: float, covariance: Array) -> Measured:
     """Return the distance between the two walls where they reach the surface; nan if one is cut."""
-    ends = [_wall_end(side * line.s, line.z, depth, covariance) for side in (-1.0, 1.0)]
-    if any(e is None for e in ends):
+    left, right = (_wall_end(side * line.s, line.z, depth, covariance) for side in (-1.0, 1.0))
+    if left is None or right is None:
         return Measured(math.nan, math.nan)
-    left, right = (e for e in ends if e is not None)
     return Measured(left.value + right.value, math.hypot(left.std, right.std))
 
 
@@ -75,9 +73,8 @@ def without_band(length: Measured, width: Measured, half_width: float) -> tuple[
     short = half_width * float(np.mean(_BAND**2))
     straight = (length.value - width.value) / (2.0 * _BAND[-1] * half_width)
     bent = min(max(1.0 - straight, 0.0), 1.0)
-    return Measured(length.value + short, length.std), Measured(
-        width.value + bent * short, width.std
-    )
+    wider = Measured(width.value + bent * short, width.std)
+    return Measured(length.value + short, length.std), wider
 
 
 def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Measured | None:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, optional
 
 
 @contextmanager
@@ -19,10 +19,7 @@ def container_of(path: Path, kind: str, allowed: str) -> Iterator[Any]:
 
     A message calls the reading `kind`, and what the file may be `allowed`.
     """
-    try:
-        import av
-    except ImportError:
-        raise missing_extra(f"reading {kind}", "video") from None
+    av = optional("av", f"reading {kind}", "video")
     try:
         # bytes come from our handle alone: FFmpeg has no protocol left to open a name with
         with (

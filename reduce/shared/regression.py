@@ -28,12 +28,8 @@ class Regression:
     sigma: float
     used: Mask
 
-    def predict(self, design: Array) -> Array:
-        """Return the fitted values for a design matrix (m, p)."""
-        return np.asarray(design @ self.coefficients)
-
     def prediction_std(self, design: Array) -> Array:
-        """Return the standard deviation of the fitted values, without the noise of a point."""
+        """Return that of the values fitted to a design (m, p), without the noise of a point."""
         return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", design, self.covariance, design)))
 
 

@@ -39,10 +39,8 @@ def find_onsets(
     heard = sosfilt(butter(4, edge, "highpass", fs=rate, output="sos"), sound.samples)
     rise = _rise_db(heard, rate)
     peaks, _ = find_peaks(rise, height=least_rise_db, distance=max(1, round(least_interval * rate)))
-    picks = [_pick(heard, int(p), rate) for p in peaks]
-    time = np.array([p[0] for p in picks])
+    time, std = np.array([_pick(heard, int(p), rate) for p in peaks]).reshape(-1, 2).T
     order = np.argsort(time)
-    std = np.array([p[1] for p in picks])
     return Onsets(time[order], std[order], rise[peaks][order])
 
 
@@ -66,8 +64,7 @@ def _rise_db(heard: Array, rate: float) -> Array:
 def _pick(heard: Array, peak: int, rate: float) -> tuple[float, float]:
     """Onset near a sample and its standard deviation [s]."""
     first = max(peak - round(RULES.onset_search[0] * rate), 0)
-    last = min(peak + round(RULES.onset_search[1] * rate), heard.size)
-    part = heard[first:last]
+    part = heard[first : peak + round(RULES.onset_search[1] * rate)]
     n = part.size
     k = np.arange(4, n - 4)
     if k.size < 4:

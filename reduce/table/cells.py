@@ -29,11 +29,10 @@ UNSEEN = ("", "nan", "-", "na")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eEdD][+-]?\d+)?")
 _COUNT = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _THOUSANDS = (
-    (re.compile(r"[+-]?\d{1,3}([ \u00a0\u2009\u202f'’]\d{3})+([.,]\d+)?"),
-     " \u00a0\u2009\u202f'’"),
+    (re.compile(r"[+-]?\d{1,3}([ \u00a0\u2009\u202f'’]\d{3})+([.,]\d+)?"), " \u00a0\u2009\u202f'’"),
     (re.compile(r"[+-]?\d{1,3}(\.\d{3})+,\d+"), "."),
     (re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+"), ","),
-)  # fmt: skip
+)
 _SEPARATORS = re.compile("[, \u00a0\u2009\u202f'’]")
 """Without one of them a number is plain."""
 _CLOCK = re.compile(
@@ -137,6 +136,5 @@ def since_first(instants: Array) -> Array:
         return instants
     after: Array = instants - instants[known[0]]
     if np.nanmax(np.abs(instants)) <= DAY:
-        back = np.diff(after[known], prepend=0.0) < -0.5 * DAY
-        after[known] += DAY * np.cumsum(back)
+        after[known] += DAY * np.cumsum(np.diff(after[known], prepend=0.0) < -0.5 * DAY)
     return after

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError, first_line, missing_extra
+from ...core.errors import InputError, optional, reading
 from .heading import in_short
 
 # limit: samples of a channel at most [-]: memory of a small machine
@@ -91,64 +91,48 @@ def _step(said: Mapping[str, Any]) -> float | None:
 
 
 def _tdms(path: Path) -> dict[str, list[_Channel]]:
-    try:
-        from nptdms import TdmsFile
-    except ImportError:
-        raise missing_extra("reading TDMS", "tables") from None
-    try:
-        with TdmsFile.open(str(path)) as file:
-            return {
-                group.name: [
-                    (c.name, _read(c, len(c), path), dict(c.properties))
-                    for c in group.channels()
-                    if len(c) and c.dtype is not None and np.dtype(c.dtype).kind in "iufb"
-                ]
-                for group in file.groups()
-            }
-    except InputError:
-        raise
-    except Exception as error:  # its reader raises what it stumbles over
-        raise _unread(path, error, "a TDMS file of LabVIEW or DIAdem") from None
+    nptdms = optional("nptdms", "reading TDMS", "tables")
+    allowed = "a TDMS file of LabVIEW or DIAdem"
+    with reading(path, allowed), nptdms.TdmsFile.open(str(path)) as file:
+        return {
+            group.name: [
+                (c.name, _read(c, len(c), path), dict(c.properties))
+                for c in group.channels()
+                if len(c) and c.dtype is not None and np.dtype(c.dtype).kind in "iufb"
+            ]
+            for group in file.groups()
+        }
 
 
 def _hdf5(path: Path) -> dict[str, list[_Channel]]:
     import h5py
 
-    try:
-        with h5py.File(path, "r") as file:
-            found: dict[str, list[_Channel]] = {}
-            places: list[str] = []
-            file.visit(places.append)
-            for place in places:
-                data = file[place]
-                if not (isinstance(data, h5py.Dataset) and data.dtype.kind in "iufb" and data.size):
-                    continue
-                group, _, name = place.rpartition("/")
-                said = {**dict(data.parent.attrs), **dict(data.attrs)}
-                values = _read(data, data.size, path)
-                if values.ndim == 2 and min(values.shape) <= 100:
-                    columns = values if values.shape[0] >= values.shape[1] else values.T
-                    found[place] = [
-                        (f"{name} {k + 1}", column, said) for k, column in enumerate(columns.T)
-                    ]
-                elif values.ndim == 1:
-                    found.setdefault(group, []).append((name, values, said))
-            return found
-    except (OSError, RuntimeError, KeyError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise _unread(path, error, "an HDF5 file with columns of numbers") from None
+    allowed = "an HDF5 file with columns of numbers"
+    found: dict[str, list[_Channel]] = {}
+    places: list[str] = []
+    raised = (OSError, RuntimeError, KeyError, ValueError)
+    with reading(path, allowed, raised=raised), h5py.File(path, "r") as file:
+        file.visit(places.append)
+        for place in places:
+            data = file[place]
+            if not (isinstance(data, h5py.Dataset) and data.dtype.kind in "iufb" and data.size):
+                continue
+            group, _, name = place.rpartition("/")
+            said = {**dict(data.parent.attrs), **dict(data.attrs)}
+            values = _read(data, data.size, path)
+            if values.ndim == 2 and min(values.shape) <= 100:
+                columns = values if values.shape[0] >= values.shape[1] else values.T
+                found[place] = [
+                    (f"{name} {k + 1}", column, said) for k, column in enumerate(columns.T)
+                ]
+            elif values.ndim == 1:
+                found.setdefault(group, []).append((name, values, said))
+    return found
 
 
 def _read(data: Any, size: int, path: Path) -> Array:
     if size > _CHANNEL_SAMPLES:
         raise InputError(
-            f"{size} samples in one channel",
-            source=str(path),
-            allowed=f"up to {_CHANNEL_SAMPLES}",
+            f"{size} samples in one channel", source=str(path), allowed=f"up to {_CHANNEL_SAMPLES}"
         )
     return np.asarray(data[:])
-
-
-def _unread(path: Path, error: Exception, allowed: str) -> InputError:
-    return InputError(f"cannot be read ({first_line(error)})", source=str(path), allowed=allowed)

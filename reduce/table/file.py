@@ -62,10 +62,7 @@ class Columns:
         return replace(self, values=self.values[rows], cells=tuple(self.cells[k] for k in rows))
 
     def find(self, which: str, *, key: str) -> int:
-        """Return the place of a column that is named, or numbered from 1.
-
-        Refuse none or several.
-        """
+        """Return the place of a column by its name, or number from 1; refuse none, or several."""
         if which.isdecimal() and 1 <= int(which) <= len(self.names):
             return int(which) - 1
         low = [" ".join(n.split()).lower() for n in self.names]
@@ -118,9 +115,8 @@ class Columns:
             elif bracketed:
                 told += f", {said!r} is none that is known"
             raise InputError(
-                f"{column} {told}",
-                source=self.source, key=key, allowed=", ".join(units),
-            )  # fmt: skip
+                f"{column} {told}", source=self.source, key=key, allowed=", ".join(units)
+            )
         return units[default]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ...core.errors import InputError
 from ..shared.units import UNITS
@@ -13,9 +13,7 @@ from ..shared.units import UNITS
 # oscilloscopes
 _LINES_ABOVE = 4
 
-_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
-    "V", "mV", "px",
-}  # fmt: skip
+_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {"V", "mV", "px"}
 _CAPITALS = {unit.upper(): unit for unit in sorted(_KNOWN_UNITS, reverse=True)}
 _BRACKETED = re.compile(r"[\[(<]\s*([^\])>]+?)\s*[\])>]")
 _AT_END = re.compile(r"(\S+?)\s*(?:[/,\n]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")
@@ -47,7 +45,7 @@ class Heading:
     """
 
     names: tuple[str, ...] = ()
-    said: tuple[tuple[str, ...], ...] = field(default=())
+    said: tuple[tuple[str, ...], ...] = ()
     step_s: float | None = None
     separator: str = ""
 
@@ -175,10 +173,9 @@ def labview_rows(
         if values:
             said[name] = [v for v in values if v]
     names = [cell.strip() for cell in lines[ends[-1] + 1].split(between)]
-    units = said.get("Y_Unit_Label", [])
     seconds = said.get("X_Dimension", ["Time"])[0] == "Time"
     first = "X_Value [s]" if seconds else "X_Value"
-    each = iter(units)
+    each = iter(said.get("Y_Unit_Label", []))
     told = [first]  # of each channel where there are several
     for name in (n for n in names[1:] if n and n != "Comment"):
         unit = "" if name == "X_Value" else next(each, "")

@@ -22,8 +22,7 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
         from .sheet import read_sheet
 
         columns = options.column.split(";")
-        found = read_sheet(path, columns, sheet=options.sheet, select=options.select)
-        return found.reduced(path)
+        return read_sheet(path, columns, sheet=options.sheet, select=options.select).reduced(path)
     table = read_columns(path, sheet=options.sheet)
     if options.select:
         table = table.select(options.select)

@@ -37,11 +37,9 @@ class TableOptions(BounceOptions, TimeWindow):
         "file", description="as N, kN, m/s2, g, mm, px; file: what the column's name says"
     )
     gain: float | None = Field(
-        None,
-        gt=0.0,
-        description="newtons or m/s2 that one of the column's unit is worth: one over "
-        "the sensitivity of a sensor read in volts",
-    )
+        None, gt=0.0, description="newtons or m/s2 that one of the column's unit is worth: one "
+        "over the sensitivity of a sensor read in volts",
+    )  # fmt: skip
     gain_std: float = Field(0.0, ge=0.0, description="its standard deviation")
     strain_is: Literal["engineering", "true"] = Field(
         "engineering", description="of a tension test; stresses likewise"
@@ -71,10 +69,9 @@ class TableOptions(BounceOptions, TimeWindow):
         "up", description="down: the heights grow downwards, as rows of a picture do"
     )
     approach_speed_m_s: float | None = Field(
-        None,
-        gt=0.0,
+        None, gt=0.0,
         description="normal speed before the pulse; with mass_kg gives the restitution",
-    )
+    )  # fmt: skip
     approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
 
 

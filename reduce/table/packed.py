@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError
+from ...core.errors import InputError, reading
 
 # limit: largest table of numbers [bytes]; memory of a small machine
 TABLE_BYTES = 500_000_000
@@ -27,32 +27,31 @@ def packed_table(path: Path, member: str) -> tuple[bytes, str]:
     `member` names it with or without its ending; the only one if empty. Refuses what is no ZIP
     file, has no such table, or several without a name.
     """
-    try:
-        with zipfile.ZipFile(path) as archive:
-            tables = [
-                i for i in archive.infolist()
-                # the folder meta holds the device, not the measurement
-                if i.filename.lower().endswith(_TABLES) and "meta/" not in i.filename
-            ]  # fmt: skip
-            known = {PurePosixPath(i.filename).stem: i for i in tables}
-            wanted = PurePosixPath(member).stem if member else ""
-            if (wanted and wanted not in known) or (not wanted and len(known) != 1):
-                raise InputError(
-                    f"no table {member!r}" if member else f"{len(known)} tables", source=str(path),
-                    key="sheet", allowed=", ".join(known) or " ".join(_TABLES),
-                )  # fmt: skip
-            chosen = known[wanted] if wanted else next(iter(known.values()))
-            if chosen.file_size > TABLE_BYTES:
-                raise InputError(
-                    f"{chosen.file_size / 1e6:.0f} MB unpacked", source=str(path),
-                    allowed=f"up to {TABLE_BYTES // 10**6} MB",
-                )  # fmt: skip
-            return archive.read(chosen), f"{path}/{chosen.filename}"
-    except (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError) as error:
-        raise InputError(
-            f"cannot be unpacked ({error})", source=str(path),
-            allowed="a whole ZIP file without password",
-        ) from None  # fmt: skip
+    allowed = "a whole ZIP file without password"
+    raised = (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError)
+    with (
+        reading(path, allowed, "cannot be unpacked", raised=raised),
+        zipfile.ZipFile(path) as archive,
+    ):
+        tables = [
+            i for i in archive.infolist()
+            # the folder meta holds the device, not the measurement
+            if i.filename.lower().endswith(_TABLES) and "meta/" not in i.filename
+        ]  # fmt: skip
+        known = {PurePosixPath(i.filename).stem: i for i in tables}
+        wanted = PurePosixPath(member).stem if member else ""
+        if (wanted and wanted not in known) or (not wanted and len(known) != 1):
+            raise InputError(
+                f"no table {member!r}" if member else f"{len(known)} tables", source=str(path),
+                key="sheet", allowed=", ".join(known) or " ".join(_TABLES),
+            )  # fmt: skip
+        chosen = known[wanted] if wanted else next(iter(known.values()))
+        if chosen.file_size > TABLE_BYTES:
+            raise InputError(
+                f"{chosen.file_size / 1e6:.0f} MB unpacked", source=str(path),
+                allowed=f"up to {TABLE_BYTES // 10**6} MB",
+            )  # fmt: skip
+        return archive.read(chosen), f"{path}/{chosen.filename}"
 
 
 def tracker_rows(path: Path, track: str) -> tuple[tuple[str, ...], Array]:
@@ -65,12 +64,9 @@ def tracker_rows(path: Path, track: str) -> tuple[tuple[str, ...], Array]:
     raw = path.read_bytes()
     if b"<!ENTITY" in raw or len(raw) > TABLE_BYTES:
         raise InputError("not a plain project", source=str(path), allowed="a TRK file of Tracker")
-    try:
+    raised = (ElementTree.ParseError, ValueError, LookupError)
+    with reading(path, "a TRK file of Tracker", raised=raised):
         root = ElementTree.fromstring(raw)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise InputError(
-            f"cannot be read ({error})", source=str(path), allowed="a TRK file of Tracker"
-        ) from None
     masses = {
         _text(o, "name"): o for o in root.iter("object")
         if o.get("class", "").endswith("tracker.PointMass")

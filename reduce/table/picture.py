@@ -13,7 +13,7 @@ from ...core.output import figure
 from ..pictures import save
 
 if TYPE_CHECKING:
-    from ..bounces.bounce import Bounced
+    from ..bounces.contacts import Bounced
     from ..bounces.track import Track
     from .pulse import Pulse
     from .tension import TensionReduction

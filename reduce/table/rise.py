@@ -54,11 +54,8 @@ def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
     than three rows, and a stress that does not rise.
     """
     peak = float(stress.max())
-    lines = [
-        line
-        for high in RULES.elastic_parts
-        if (line := _up_to(high * peak, strain, stress)) is not None
-    ]
+    each = (_up_to(high * peak, strain, stress) for high in RULES.elastic_parts)
+    lines = [line for line in each if line is not None]
     best: tuple[_Line, _Line | None] | None = None
     for line, lower in zip_longest(lines, lines[1:]):
         if line.straight >= RULES.elastic_straight and (

@@ -35,10 +35,8 @@ class Series(NamedTuple):
     @property
     def notes(self) -> tuple[str, ...]:
         """What is said of rows whose time does not go on: rounded, or a second record."""
-        return (
-            (f"{self.behind} rows at or before the time of an earlier one are left out",)
-            if self.behind else ()
-        )  # fmt: skip
+        told = f"{self.behind} rows at or before the time of an earlier one are left out"
+        return (told,) if self.behind else ()
 
     def missed_notes(self, but: str) -> tuple[str, ...]:
         """Return what is said of cells that hold no number, if there are some."""

@@ -177,10 +177,9 @@ def _readings(strain: Array, stress: Array, source: str) -> tuple[Array, Array]:
     whole = np.isfinite(strain) & np.isfinite(stress)
     if np.count_nonzero(whole) < RULES.table_rows:
         raise InputError(
-            f"{np.count_nonzero(whole)} rows",
-            source=source,
+            f"{np.count_nonzero(whole)} rows", source=source,
             allowed=f"{RULES.table_rows} or more of strain and stress",
-        )
+        )  # fmt: skip
     return strain[whole], stress[whole]
 
 
@@ -246,8 +245,7 @@ def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
 def _other_unit(E: float) -> str:
     """Return the unit in which a modulus is a metal's that is none in pascals, if there is one."""
     low, high = RULES.metal_moduli
-    units = UNITS["stress"]
-    return next((u for u in ("MPa", "GPa") if E < low <= E * units[u] <= high), "")
+    return next((u for u in ("MPa", "GPa") if E < low <= E * UNITS["stress"][u] <= high), "")
 
 
 def _no_metal(modulus: Measured, strength: float) -> str:
@@ -297,6 +295,5 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
         ahead = (largest - strain[-1]) / (strain[-1] - strain[-2])
         end = np.clip(flow[-1] + ahead * (flow[-1] - flow[-2]), last.min(), last.max())
         strain, flow = np.append(strain, largest), np.append(flow, end)
-    first = np.concatenate([[0.0], strain]), np.concatenate([[flow[0]], flow])
-    nothing = np.full(first[0].size, np.nan)
-    return MeasuredFlow(first[0], first[1], nothing, nothing)
+    nothing = np.full(strain.size + 1, np.nan)
+    return MeasuredFlow(np.append(0.0, strain), np.append(flow[0], flow), nothing, nothing)

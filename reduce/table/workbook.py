@@ -12,7 +12,7 @@ from string import ascii_uppercase
 from typing import Any
 from xml.etree import ElementTree
 
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, optional, reading
 
 _UNCOUNTED = "formula without a stored number"
 
@@ -123,19 +123,11 @@ def _place(where: str) -> tuple[int, int]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    try:
-        import python_calamine as calamine
-    except ImportError:
-        raise missing_extra("reading workbooks", "tables") from None
-    try:
+    calamine = optional("python_calamine", "reading workbooks", "tables")
+    damaged = (calamine.CalamineError, zipfile.BadZipFile, ElementTree.ParseError)
+    allowed, failed = "XLS, XLSX or ODS without a password", "not a workbook that can be read"
+    with reading(path, allowed, failed, raised=(*damaged, OSError, LookupError)):
         yield calamine.CalamineWorkbook.from_path(str(path))
-    except (
-        calamine.CalamineError, OSError, LookupError, zipfile.BadZipFile, ElementTree.ParseError,
-    ) as error:  # fmt: skip
-        raise InputError(
-            f"not a workbook that can be read ({error})", source=str(path),
-            allowed="XLS, XLSX or ODS without a password",
-        ) from None  # fmt: skip
 
 
 def _typed(cell: object) -> str:

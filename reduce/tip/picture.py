@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core.output import figure
+from ..images.picture_file import Frame
 from ..pictures import save
 from .reduction import TipReduction
 
 
-def draw_tip(result: TipReduction, picture: npt.NDArray[np.uint8], path: Path) -> None:
+def draw_tip(result: TipReduction, picture: Frame, path: Path) -> None:
     """Draw the photograph with what was fitted, and the residuals along the arc."""
     made, axes = figure(1, 2, size=(13.0, 6.0))
     photo, plot = axes[0]

@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Array, Integers
-from ..bounces.bounce import Bounce, Bounced
-from ..bounces.contacts import told_bounces
+from ..bounces.contacts import Bounce, Bounced, told_bounces
 from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
@@ -89,8 +88,7 @@ class VideoReduction:
 
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each contact."""
-        names = labels(len(self.bounces))
-        return tuple(self._trial(k, label) for k, label in enumerate(names))
+        return tuple(self._trial(k, label) for k, label in enumerate(labels(len(self.bounces))))
 
     def _trial(self, k: int, label: str) -> Trial:
         bounce, part = self.bounces[k], self.found.part(k)
@@ -114,13 +112,9 @@ class VideoReduction:
 
 
 def reduce_video(
-    clip: Clip,
-    optics: Optics,
-    *,
-    shape: str = "rod",
-    striker_is: str = "bright",
+    clip: Clip, optics: Optics, *, shape: str = "rod", striker_is: str = "bright",
     background: str = "none",
-) -> VideoReduction:
+) -> VideoReduction:  # fmt: skip
     """Track the striker through a clip with gravity downwards and return its contacts.
 
     A rod enters from above, with straight sides and a round tip; a sphere is wholly in view.
@@ -217,12 +211,8 @@ def _lean_notes(result: VideoReduction) -> list[str]:
         "before": result.lean[max(turning - 2 * count, 0) : turning][:count],
         "after": result.lean[turning + count : turning + 2 * count],
     }
-    notes = []
-    for name, lean in sides.items():
-        if lean.size == 0:
-            continue
-        angle, std = float(np.median(lean)), float(np.std(lean))
-        notes.append(
-            f"axis {name} contact {90 - math.degrees(angle):.2f} ± {math.degrees(std):.2f} deg"
-        )
-    return notes
+    return [
+        f"axis {name} contact {90 - math.degrees(np.median(lean)):.2f} ± "
+        f"{math.degrees(np.std(lean)):.2f} deg"
+        for name, lean in sides.items() if lean.size
+    ]  # fmt: skip

@@ -7,18 +7,18 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ..images.clip import Clip
 from ..images.edge_fit import BallEdge, RodPose, RodShape, fit_ball, fit_rod
+from ..images.picture_file import Frame
 from ..images.silhouette import ball_by_light, body_mask, rod_guess
 from ..rules import RULES
 
 
 def track_rod(
-    frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float], source: str
+    frames: Frame, critical: int, levels: tuple[float, float], source: str
 ) -> tuple[dict[str, Any], RodShape]:
     """Return the tip of a rod in each frame, as named arrays (n,), and the shape of the rod.
 
@@ -53,7 +53,7 @@ def _places(found: Sequence[tuple[int, RodPose | BallEdge]]) -> dict[str, Any]:
 
 
 def _guessed(
-    frames: npt.NDArray[np.uint8], numbers: Iterable[int], levels: tuple[float, float]
+    frames: Frame, numbers: Iterable[int], levels: tuple[float, float]
 ) -> Iterator[tuple[int, Array, tuple[RodShape, tuple[float, float, float]]]]:
     """Yield number, grey values, and shape and pose to the pixel, of frames that show a rod."""
     for number in numbers:
@@ -64,14 +64,13 @@ def _guessed(
 
 
 def _without_reflection(
-    frames: npt.NDArray[np.uint8], poses: list[tuple[int, RodPose]], shape: RodShape,
-    levels: tuple[float, float],
-) -> list[tuple[int, RodPose]]:  # fmt: skip
+    frames: Frame, poses: list[tuple[int, RodPose]], shape: RodShape, levels: tuple[float, float]
+) -> list[tuple[int, RodPose]]:
     """Fit the tip anew, with its reflection, where it is so near to the flat that both overlap."""
     rows = np.array([p.y for _, p in poses])
     lowest = float(rows.max(initial=0.0))
     low, high = (lowest - n * shape.blur for n in (RULES.mirror_reach, RULES.mirror_least))
-    both = [k for k in np.flatnonzero((rows > low) & (rows < high))]
+    both = np.flatnonzero((rows > low) & (rows < high))
     found = []
     for k in both[:: max(1, len(both) // RULES.mirror_frames)]:
         number, pose = poses[k]
@@ -99,9 +98,7 @@ def _without_reflection(
     return again
 
 
-def _rod_shape(
-    frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float]
-) -> RodShape | None:
+def _rod_shape(frames: Frame, critical: int, levels: tuple[float, float]) -> RodShape | None:
     """Median shape from frames around the critical one, in which most of the rod is seen."""
     reach = max(len(frames) // 8, RULES.shape_frames)
     first, last = max(critical - reach, 0), min(critical + reach, len(frames) - 1)
@@ -116,9 +113,7 @@ def _rod_shape(
     return RodShape(*(float(v) for v in np.median(np.array(found), axis=0)))
 
 
-def track_ball(
-    frames: npt.NDArray[np.uint8], levels: tuple[float, float], source: str
-) -> dict[str, Any]:
+def track_ball(frames: Frame, levels: tuple[float, float], source: str) -> dict[str, Any]:
     """Return centre and radius of a ball in each frame, as named arrays (n,); refuse few."""
     seen = [(n, ball_by_light(f.astype(np.float64), levels=levels)) for n, f in enumerate(frames)]
     light = [(n, b) for n, b in seen if b is not None]
@@ -143,7 +138,7 @@ def _ball_edge(grey: Array, ball: BallEdge, dark: float) -> BallEdge | None:
     return fit_ball(grey, (ball.x, ball.y, ball.radius), levels=(dark, ball.bright))
 
 
-def striker_bright(clip: Clip, striker_is: str, background: str) -> npt.NDArray[np.uint8]:
+def striker_bright(clip: Clip, striker_is: str, background: str) -> Frame:
     """Return frames in which the striker is bright on a dark ground, (n, rows, columns)."""
     frames = clip.frames
     if background == "median":
@@ -156,7 +151,7 @@ def striker_bright(clip: Clip, striker_is: str, background: str) -> npt.NDArray[
     return frames if striker_is == "bright" else 255 - frames
 
 
-def grey_levels(frames: npt.NDArray[np.uint8], source: str) -> tuple[float, float]:
+def grey_levels(frames: Frame, source: str) -> tuple[float, float]:
     """Return the grey levels of ground and striker: medians on both sides of Otsu's threshold."""
     from skimage.filters import threshold_otsu
 

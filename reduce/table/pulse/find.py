@@ -1,9 +1,4 @@
-"""A pulse of force or acceleration: its peak, its ends, and the area under it.
-
-Where the bodies touch and part the force follows a power of the time: 3/2 of an elastic sphere, 1
-of a plastic dent or of a spring. The flanks above the noise tell where it meets zero, by each power
-as far as it fits.
-"""
+"""A pulse of force or acceleration: its peak, its ends, and the area under it."""
 
 from __future__ import annotations
 

@@ -36,10 +36,7 @@ class Level(NamedTuple):
 
 
 def level_before(up: Array, top: int) -> Level:
-    """Return the level just before the pulse that peaks at sample `top` of a record (n,).
-
-    Upwards.
-    """
+    """Return the level before the pulse that peaks upwards at sample `top` of a record (n,)."""
     noise = robust_std(np.diff(up)) / math.sqrt(2.0)
     low = float(np.percentile(up[: top + 1], 5.0))
     height = float(up[top]) - low
@@ -86,6 +83,7 @@ def _quiet(up: Array, width: int, noise: float, height: float, low: float) -> in
     """Beginning of the last window without a trend; of those within a foot's reach the lowest."""
     best, mean_of_best, since = None, math.inf, 0
     for first in range(up.size - width, -1, -max(width // 4, 1)):
+        since += 1
         part = up[first : first + width]
         mean = float(part.mean())
         trend = float(np.polyfit(np.linspace(-0.5, 0.5, width), part, 1)[0])
@@ -94,15 +92,11 @@ def _quiet(up: Array, width: int, noise: float, height: float, low: float) -> in
         quiet = flat and np.ptp(part) < max(8.0 * noise, 2.0 * RULES.level_trend * height)
         if quiet and mean < low + 0.35 * height:
             lower = mean < mean_of_best - max(known, 0.2 * RULES.level_trend * height)
-            if best is not None and not lower:
-                since += 1
             if best is None:
                 if _is_level(up[slice(*_stretch(up, first, width, noise, height))], width, noise):
                     return first
             if best is None or lower:
                 best, mean_of_best, since = first, mean, 0
-        elif best is not None:
-            since += 1
         if best is not None and since > 4 * RULES.foot_reach:
             break
     return best

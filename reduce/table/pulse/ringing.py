@@ -73,9 +73,8 @@ def ringing_within(
     )
     # what rings while it is pushed is pushed farther, by the square of the pulse's pace in its own
     more = (math.pi / turn) ** 2
-    return RingingWithin(
-        swing, math.sqrt(found), math.hypot(math.sqrt(chance + 0.25 * found), more)
-    )
+    unsure = math.hypot(math.sqrt(chance + 0.25 * found), more)
+    return RingingWithin(swing, math.sqrt(found), unsure)
 
 
 def _unknown(clear: Array, part: float) -> RingingWithin:

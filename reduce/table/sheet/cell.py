@@ -73,9 +73,8 @@ def decimals_of(
         alike = any(_LONG.fullmatch(n) for n in every)
         for numbers in each:
             seen = {n[-4] if _GROUPED.fullmatch(n) else "" for n in numbers}
-            signs |= (
-                seen if len(seen) == 1 and (alike or (seen == {","} and between == ";")) else set()
-            )
+            if len(seen) == 1 and (alike or (seen == {","} and between == ";")):
+                signs |= seen
         signs.discard("")
     return signs.pop() if len(signs) == 1 else ""
 

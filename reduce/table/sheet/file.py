@@ -130,9 +130,8 @@ def _place(head: Head, name: str, source: str, key: str) -> int:
         if header and bare(name) in (bare(header), bare(without_unit(header))):
             return k
     raise InputError(
-        f"no header {name!r}", source=source, key=key,
-        allowed=", ".join(filter(None, head.headers)),
-    )  # fmt: skip
+        f"no header {name!r}", source=source, key=key, allowed=", ".join(filter(None, head.headers))
+    )
 
 
 def _of_book(
@@ -174,13 +173,8 @@ def _of_text(
     utf8 = raw.decode(errors="ignore").encode() == raw
     if not utf8 and not wide_coding(raw):
         texts += [raw.decode(coding, errors="replace") for coding in _CODINGS]
-    every = [
-        [
-            "\n" if _RULER.fullmatch(line.strip()) else line
-            for line in text.splitlines(keepends=True)
-        ]
-        for text in texts
-    ]
+    each = [text.splitlines(keepends=True) for text in texts]
+    every = [["\n" if _RULER.fullmatch(line.strip()) else line for line in one] for one in each]
     tried = [
         (lines, between, head_of(_typed(rows), given).known)
         for lines in every for one in ("", ";", "\t", ",", "|", WIDE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 from ....core.errors import InputError
@@ -74,9 +74,8 @@ class SheetColumn:
     def no_unit(self) -> str:
         """What is wrong with the header's unit."""
         said = kinds.said_unit(self.header)
-        return f"{said!r} is no unit of {self.kind.quantity} that is known" if said else (
-            "the header names no unit"
-        )  # fmt: skip
+        other = f"{said!r} is no unit of {self.kind.quantity} that is known"
+        return other if said else "the header names no unit"
 
 
 @dataclass(frozen=True)
@@ -89,7 +88,7 @@ class Head:
     first: int = 0
     end: int = 0
     headers: Sequence[str] = ()
-    says: Sequence[str] = field(default=())
+    says: Sequence[str] = ()
 
     @property
     def known(self) -> tuple[int, int, int, int]:

@@ -37,8 +37,7 @@ LEAST, END = (
     for end in (words.LEAST, f"{words.LEAST}|{words.MOST}")
 )
 _WIDE = _ENDS.format(f"({letters(words.SPREADS)}|{letters(words.ERRORS)})")
-_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?|(?<=[)\]] )[su]$|(?<=\w )[su](?= [\[(])",
-                     re.IGNORECASE)  # fmt: skip
+_SPREAD = re.compile(rf"±|\+/-|{_WIDE}\.?|(?<=[)\]] )[su]$|(?<=\w )[su](?= [\[(])", re.IGNORECASE)
 _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
 _PLAIN = (CONDITIONS.keys() | MEASURED.keys()) - {"striker"}
@@ -55,11 +54,8 @@ def kind_of(header: str) -> SheetKind | None:
     found = next((kind for kind in KINDS if kind.is_said(text)), None) if text else None
     if found is None or found.quantity == "text":
         return found
-    if (
-        words.has(words.RANGE, text)
-        or words.has(words.THEORY, bare(header))
-        or "²" in without_unit(header)
-    ):
+    other = words.has(words.RANGE, text) or words.has(words.THEORY, bare(header))
+    if other or "²" in without_unit(header):
         return None
     # E (J) is an energy, E (GPa) a modulus, T (ms) no temperature
     unit = said_unit(header).strip("-%1") if len(text) == 1 else ""

@@ -429,6 +429,5 @@ def _read(
             found.setdefault(name, []).append(value)
     for name, stds in spreads.items():
         if len(found.get(name, ())) == len(stds):
-            pairs = zip(found[name], stds, strict=True)
-            found[name] = [Measured(v.value, std) for v, std in pairs]
+            found[name] = [Measured(v.value, std) for v, std in zip(found[name], stds, strict=True)]
     return found, unread
