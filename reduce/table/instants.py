@@ -12,11 +12,15 @@ from ..bounces.times import reduce_bounce_times
 from ..reduced import Reduced
 from .file import Columns
 from .options import TableOptions
+from .series import counts
 
 
 def reduce(path: Path, table: Columns, options: TableOptions) -> Reduced:
     """Return the bounces behind a column of three or more instants that increase."""
     column = table.find(options.time, key="time")
+    # 1, 2, 3 ... numbers the contacts, and their times stand beside it
+    if "time" not in options.model_fields_set and counts(table.values[:, column]):
+        column = min(column + 1, len(table.names) - 1)
     unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
     times = table.values[:, column] * unit
     times = times[np.isfinite(times)]

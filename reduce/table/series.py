@@ -53,8 +53,8 @@ _DAY_0 = date(1899, 12, 30).toordinal()
 """From which spreadsheets count days."""
 
 
-def _counts(column: Array) -> bool:
-    """Whether a column without a unit holds 0, 1, 2 ... instead of times."""
+def counts(column: Array) -> bool:
+    """Return whether a column without a unit holds 0, 1, 2 ... instead of times."""
     steps = np.diff(column[np.isfinite(column)])
     return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
 
@@ -112,7 +112,7 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     given = table.values[:, where]
     if options.rate_hz is not None:
         # a clock of a computer is coarser than the samples: their number tells the time
-        return (given if _counts(given) else rows) / options.rate_hz
+        return (given if counts(given) else rows) / options.rate_hz
     unsaid = options.time_unit == "file" and not table.unit(where)
     column = f"column {table.names[where] or where + 1!r}"
     days = [float(date(y, 1, 1).toordinal() - _DAY_0) for y in (1970, 2100)]
@@ -121,7 +121,7 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     for wrong, told, key, allowed in (
         (not np.isfinite(given).any(), f"no times in {column}", "time",
          "a column of times, or samples a second as rate_hz"),
-        (unsaid and _counts(given), "the column counts samples", "rate_hz",
+        (unsaid and counts(given), "the column counts samples", "rate_hz",
          "samples a second, or time_unit if these are times"),
         (unsaid and days[0] < first < days[1],
          f"{column}: {first:.9g} are seconds, or days of a spreadsheet", "time_unit",

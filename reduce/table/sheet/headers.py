@@ -10,7 +10,7 @@ from itertools import pairwise
 from ....core.errors import InputError
 from ....recordings.columns import CONDITIONS
 from ...shared.units import quantity_of
-from ..heading import is_unit
+from ..heading import in_short, is_unit
 from . import kinds
 from .kinds import kind_of, unit_of
 from .words import (
@@ -33,6 +33,7 @@ ABOVE = "row {}, left out: above the headers"
 _NUMBER = re.compile(
     r"(ca\.?|[~≈Ø])?\s*[+-]?\s*\d[\d.,' ]*([eE][+-]?\d+)?([^\d(\[]{0,6}|(±|\+/?-).*)"
 )
+_OWN_UNIT = re.compile(r"[+-]?[\d.,]+\s*([^\W\d]\S{0,5})")
 _STD_OF = re.compile(r"^(u|s|sd|std|σ)\s*[(\[]([^)\]]*)[)\]]")
 _PAIR = re.compile(rf"(d|({DIAMETER})\w*)\.?[ _]?[12xy]")
 """Two diameters of one round, as a dent is read: d1, d2."""
@@ -121,7 +122,13 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
                 break
             units = [_is_units(row) for row in rows[first : end + 1]]
             if headers and (any(units[:-1]) or not units[-1] or end == len(rows)):  # or they miss
-                says = _of_dents([_as_given(header, given) for header in headers])
+                below = zip(*rows[end:], strict=True) if rows[end:] else [()] * len(headers)
+                says = _of_dents(
+                    [
+                        _with_unit_below(_as_given(header, given), cells)
+                        for header, cells in zip(headers, below, strict=True)
+                    ]
+                )
                 here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
         found = max(found, here, key=lambda head: (head.known, head.first - head.end))
     return found
@@ -136,6 +143,17 @@ def _as_given(header: str, given: Mapping[str, str]) -> str:
     if kind is None or unit_of(said, kind) is not None:
         return said
     return f"{said} ({kinds.said_unit(header)})"
+
+
+def _with_unit_below(says: str, cells: Sequence[str]) -> str:
+    """A header with the one unit of its cells where it needs that: Rebound, 7.2 in, 14.1 in."""
+    found = [_OWN_UNIT.fullmatch(cell) for cell in cells if cell]
+    units = {in_short(one[1]) for one in found if one}
+    if not (says and all(found) and len(units) == 1 and is_unit(*units)):
+        return says
+    with_unit = f"{says} ({units.pop()})"
+    (alone, whole) = (kind and kind.quantity for kind in (kind_of(says), kind_of(with_unit)))
+    return with_unit if alone in (None, "text") and whole not in (None, "text") else says
 
 
 def _headers(block: Sequence[Sequence[str]]) -> list[str]:

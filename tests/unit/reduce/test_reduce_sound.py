@@ -257,6 +257,13 @@ def test_a_bounce_that_the_stop_watch_missed_is_found():
     assert max(e) < 0.95
 
 
+def test_times_stand_beside_the_numbers_of_the_bounces(tmp_path):
+    path = tmp_path / "watch.csv"
+    path.write_text("bounce,time (s)\n1,0.452\n2,1.23\n3,1.92\n4,2.53\n5,3.07\n")
+    reduced = load_kind("table").run(path, {"holds": "bounces"}, source="test")
+    assert reduced.values["bounce2_restitution"].value == pytest.approx(0.69 / 0.778, rel=1e-9)
+
+
 @pytest.mark.parametrize("std", [2e-5, None], ids=["heard", "stopped"])
 def test_five_taps_are_seldom_a_bouncing_ball(std):
     """Even ones with a twentieth of scatter, and of any interval from 0.15 to 0.9 s."""

@@ -70,7 +70,8 @@ def test_a_german_sheet(tmp_path):
     "text",
     ["drop height (mm),Rebound [mm]\n500,180\n", "Fallhöhe (cm),Rückprall (cm)\n50,18\n",
      "v_in (m/s),v_out (m/s)\n2,1.2\n", "v_in (m/s),rebound (m/s)\n2,1.2\n",
-     "v_in (ft/s),v_out [ft/s]\n2,1.2\n", "drop (ft),rebound (mil)\n1,4320\n"],
+     "v_in (ft/s),v_out [ft/s]\n2,1.2\n", "drop (ft),rebound (mil)\n1,4320\n",
+     "drop,rebound\n1 ft,4.32 in\n"],
 )  # fmt: skip
 def test_a_rebound_is_a_height_or_a_speed_by_its_unit(tmp_path, text):
     assert restitutions(read_text(tmp_path, text)) == pytest.approx([0.6])
