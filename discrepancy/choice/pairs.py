@@ -109,7 +109,9 @@ def _beside(ranking: Ranking, lead: Fit) -> Iterable[_Candidate]:
     """A fitted explanation with each other one, by what that does beside the stated numbers."""
     own = lead.mechanisms[0]
     for s in ranking.screened:
-        if s.mechanism is not own and not (is_wrong(s.mechanism) and is_wrong(own)):
+        other = s.mechanism
+        apart = other is not own and other.name not in own.holds and own.name not in other.holds
+        if apart and not (is_wrong(other) and is_wrong(own)):
             yield _together(ranking, lead, s)
 
 

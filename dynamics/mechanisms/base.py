@@ -147,6 +147,7 @@ class Mechanism(ABC):
     - `static`: whether it acts without motion, and so on a quasi-static press as well.
     - `aslant`: whether it moves the line between sticking and sliding: two of these decide
       together where that is, so that what they do is no sum.
+    - `holds`: mechanisms that it is made of: none of them has an effect of its own beside it.
     - `mutual`: whether what it takes of the approach goes to the struck body: of both it keeps the
       momentum.
     - `in_flight`: whether it acts before the touch: the others meet what it has left of the
@@ -170,6 +171,7 @@ class Mechanism(ABC):
     named: ClassVar[bool] = True
     static: ClassVar[bool] = False
     aslant: ClassVar[bool] = False
+    holds: ClassVar[tuple[str, ...]] = ()
     mutual: ClassVar[bool] = False
     in_flight: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()

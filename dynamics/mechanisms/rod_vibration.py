@@ -15,8 +15,6 @@ from ..scene import Scene, Striker
 from .arithmetic import density_of, is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
-_SIDEWAYS = 0.82  # tangential stiffness over 2 E' a: 2 (1 - nu)/(2 - nu), Mindlin 1949
-
 _PARTICIPATION = Parameter(
     "modal_participation", "-", 0.5, 1.5, "linear", 0.0,
     "1 is the theory of the uniform rod; the ends' shape and the mass's spread move it", nodes=5,
@@ -27,7 +25,7 @@ _PARTICIPATION = Parameter(
 class _Ringing(Mechanism):
     """A rod that is no rigid body: its modes take energy and give it back."""
 
-    parameters = (_PARTICIPATION,)
+    parameters: tuple[Parameter, ...] = (_PARTICIPATION,)
     form = 0.05
     jumps = True
     rests_on = ("striker",)
@@ -73,9 +71,18 @@ class RodFlexuralVibration(_Ringing):
     title = "the leaning rod bends and rings"
     equations = (
         "free-free Timoshenko beam and axial modes; the contact gives way sideways, k_t = "
-        "0.82 2 E' a; re-contact while the tip returns"
+        "s 2 E' a; re-contact while the tip returns"
     )
+    parameters = (
+        _PARTICIPATION,
+        Parameter(
+            "tangential_stiffness_ratio", "-", 0.3, 1.5, "log", math.inf,
+            "s: 2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=3,
+            literature=Literature(0.82, "Mindlin 1949"),
+        ),
+    )  # fmt: skip
     aslant = True
+    holds = ("rod-longitudinal-waves", "tangential-compliance")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod that leans."""
@@ -95,7 +102,7 @@ class RodFlexuralVibration(_Ringing):
         if found is scene:
             return scene
         # it gives way as far as the rod takes part
-        sideways = _SIDEWAYS / values["modal_participation"]
+        sideways = values["tangential_stiffness_ratio"] / values["modal_participation"]
         return found.with_(friction=replace(found.friction, stiffness=sideways))
 
     def modes(self, striker: Striker, body: Material) -> Modes:

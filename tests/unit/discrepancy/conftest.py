@@ -37,6 +37,7 @@ class Effect:
     scale_error: float = 0.0
     jumps: bool = False
     aslant: bool = False
+    holds: tuple[str, ...] = ()
     named: bool = True
     rests_on: tuple[str, ...] = ()
     title: str = "a shape"

@@ -202,6 +202,13 @@ def test_two_that_decide_together_or_lead_are_fitted_whatever_their_sum(
     assert [pair.name for pair in pairs] == ["rising+low"] * fitted
 
 
+def test_what_a_mechanism_is_made_of_has_no_effect_beside_it(toy) -> None:
+    effects = (toy.Effect("rising", RISING, holds=("bent",)), toy.Effect("bent", BENT))
+    simulator = together(toy, 0.5 * np.array(RISING) + 0.4 * np.array(BENT), BENT)
+    found = with_pairs(simulator, rank(simulator, mechanisms=effects))
+    assert (found.pairs, found.unfitted) == ((), {})
+
+
 def test_a_pair_of_many_parameters_costs_the_sum_of_its_nodes_not_their_product() -> None:
     """Two effects that bend, of three parameters each, and a product of both between them."""
     numbers = tuple(Parameter(k, "-", 0.0, 1.0, "linear", 0.0, "", nodes=9) for k in "abc")
