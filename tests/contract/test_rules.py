@@ -28,7 +28,6 @@ EXACT = {
     "core/rig.py": "TABOR TABOR_STRAIN",
     "dynamics/mechanisms/arithmetic.py": "_STEEL_DENSITY",
     "dynamics/mechanisms/squeeze_film.py": "_CRITICAL_STOKES",
-    "dynamics/mechanisms/rod_vibration.py": "_SIDEWAYS",
     "dynamics/mechanisms/strength/flow_stress.py": "RATE",
     "dynamics/mechanisms/strength/strain_rate_hardening.py": "REFERENCE_RATE",
     "discrepancy/report/wording.py": "_UNIT",
