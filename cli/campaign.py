@@ -183,8 +183,11 @@ def _tell_published(published: list[Any]) -> None:
         typer.echo(f"  {one.design:12} {one.done:4} done {one.failed:3} failed{old}")
 
 
-for command in ("show", "refine", "export", "publish", "repair"):
-    app.command()(getattr(campaign_data, command))
+for command in (
+    campaign_data.show, campaign_data.refine, campaign_data.export, campaign_data.publish,
+    campaign_data.repair,
+):  # fmt: skip
+    app.command()(command)
 studies.add(app, "campaign reproduction")
 
 

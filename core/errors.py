@@ -115,7 +115,7 @@ def missing_extra(what: str, extra: str) -> InputError:
 
 
 def optional(module: str, what: str, extra: str) -> Any:
-    """Return a module of an optional package; `what` needs it, where it is missing refused."""
+    """Return a module that `what` needs, or refuse where its package, an extra, is missing."""
     try:
         return import_module(module)
     except ImportError:
@@ -132,7 +132,7 @@ def first_line(error: BaseException) -> str:
 def reading(
     path: Path, allowed: str, failed: str = "cannot be read", *, raised: Any = Exception
 ) -> Iterator[None]:
-    """Refuse a file in which a library fails, by default in whatever way: each raises its own."""
+    """Refuse a file in which a library fails with `raised`; by default with whatever it has."""
     try:
         yield
     except InputError:

@@ -249,7 +249,10 @@ class BodyTable(MaterialTable):
 
     @property
     def tabor(self) -> tuple[float, float, str] | None:
-        """Hardness over strength, std off Tabor's, both in words; None unless both are stated."""
+        """Hardness over strength, its standard deviations off Tabor's ratio, and both in words.
+
+        None unless hardness and strength are stated.
+        """
         if self.hardness_Pa is None or self.Sy_Pa is None:
             return None
         ratio = self.hardness_Pa.value / self.Sy_Pa.value

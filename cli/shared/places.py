@@ -41,7 +41,10 @@ def file_option(about: str, *, name: str = "--to") -> Any:
 
 
 def writable_folder(path: Path, *, key: str) -> Path:
-    """Return a folder, there or not; refused as or below a file, or where none may be written."""
+    """Return the folder, which need not exist yet.
+
+    Refused where it is a file, lies below one, or may not be written.
+    """
     there = path.absolute()
     while not there.exists() and not there.is_symlink() and there != there.parent:
         there = there.parent
@@ -60,7 +63,10 @@ def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
 
 
 def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
-    """Refuse parameters `names` of the command that do nothing `option`: "beside --new"."""
+    """Refuse options and arguments of a command, by their `names`, that do nothing beside another.
+
+    `option` is what rules them out, as it is told: "beside --new".
+    """
     for parameter in context.command.params:
         source = context.get_parameter_source(parameter.name or "")
         if parameter.name in names and source is not None and source.name == "COMMANDLINE":

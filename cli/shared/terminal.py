@@ -33,7 +33,10 @@ def show_table(
     to: Console, head: Sequence[str], rows: Sequence[Sequence[str]], *, title: str = "",
     align: Literal["left", "right"] = "right",
 ) -> None:  # fmt: skip
-    """Print a table in parts that fit the width, the first column in each; `align`: the others."""
+    """Print a table, in parts where the width does not hold all columns, the first one in each.
+
+    The first column stands on the left; `align` is that of the others.
+    """
     if title:
         to.print(title)
     for table in parts(head, rows, width=to.width, align=align):
@@ -80,7 +83,7 @@ def _columns() -> int:
 
 
 def wrapped(text: str, indent: int = 0, further: int = 0) -> str:
-    """Return a text, names whole, in lines of a terminal, all but the first indented `further`."""
+    """Return a text in lines of a terminal, all but the first indented by `further` more."""
     lines = textwrap.wrap(
         text, _columns(), initial_indent=" " * indent, subsequent_indent=" " * (indent + further),
         break_long_words=False, break_on_hyphens=False,

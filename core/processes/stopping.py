@@ -28,7 +28,7 @@ _DEFAULT: dict[int, Any] = {
 
 
 class Stopped(BaseException):
-    """A signal, by its number, asks the command to end; no library takes it for its own Ctrl-C."""
+    """A signal asks the command to end; no library takes this for a Ctrl-C of its own."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__()

@@ -91,7 +91,10 @@ class InverseRow:
 
 
 def read_inverse(path: Path) -> list[InverseRow]:
-    """Read an inverse file and infer each trial; every mistake is a line, as a tip that sticks."""
+    """Read an inverse file and infer each trial; every mistake is a line.
+
+    A friction coefficient at which the tip sticks is one.
+    """
     source = str(path)
     content = read_toml(path)
     _check_striker(content, source)

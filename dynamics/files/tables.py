@@ -53,7 +53,7 @@ def impact_row(impact: Impact) -> dict[str, Any]:
 def write_hdf5(
     path: Path, traces: Mapping[str, Trace], *, about: Mapping[str, str] | None = None
 ) -> None:
-    """Write histories and observables, a group a law, units in the names; `about`: for people."""
+    """Write histories and observables, a group for each law, units in names; `about`: texts."""
     stream = io.BytesIO()
     with h5py.File(stream, "w") as store:
         store.attrs.update({**environment(), **(about or {})})

@@ -122,11 +122,11 @@ def head_of(rows: Sequence[Sequence[str]], given: Mapping[str, str]) -> Head:
                 break
             units = [_is_units(row) for row in rows[first : end + 1]]
             if headers and (any(units[:-1]) or not units[-1] or end == len(rows)):  # or they miss
-                below = zip(*rows[end:], strict=True) if rows[end:] else [()] * len(headers)
+                page = rows[end : end + _ROWS] or [[""] * len(headers)]
                 says = _of_dents(
                     [
                         _with_unit_below(_as_given(header, given), cells)
-                        for header, cells in zip(headers, below, strict=True)
+                        for header, cells in zip(headers, zip(*page, strict=True), strict=True)
                     ]
                 )
                 here = max(Head(first, end, headers, says), here, key=lambda head: head.known)
