@@ -14,6 +14,7 @@ from ..rules import RULES
 from ..scene import Scene, Striker
 from .arithmetic import density_of, is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+from .tangential_compliance import TangentialCompliance
 
 _PARTICIPATION = Parameter(
     "modal_participation", "-", 0.5, 1.5, "linear", 0.0,
@@ -75,10 +76,8 @@ class RodFlexuralVibration(_Ringing):
     )
     parameters = (
         _PARTICIPATION,
-        Parameter(
-            "tangential_stiffness_ratio", "-", 0.3, 1.5, "log", math.inf,
-            "s: 2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=3,
-            literature=Literature(0.82, "Mindlin 1949"),
+        replace(
+            TangentialCompliance.parameters[0], nodes=3, literature=Literature(0.82, "Mindlin 1949")
         ),
     )  # fmt: skip
     aslant = True
